@@ -1,0 +1,54 @@
+// Which chunks to draw and which to want: a walk over the resident forest from the roots, in double precision.
+// Pure: the same cache and view give the same selection. Owner thread: render.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geo/view.h"
+#include "paging/terrain_cache.h"
+
+namespace eye {
+
+enum class CullingScheme { none, frustum };
+
+struct LodOptions {
+  double ssePx = 1;        // tolerated screen-space error of geometry
+  double texelPx = 4;      // greatest size of an imagery texel on screen while finer imagery exists
+  CullingScheme culling = CullingScheme::frustum;  // frustum: view planes and horizon
+};
+
+struct DrawnChunk {
+  uint32_t node = 0;            // TerrainCache node
+  double distanceM = 0;         // eye to the chunk's box
+  uint8_t skirtMask = 0;        // bit (1 << Side): the neighbour there is not drawn at this level
+  double skirtDepthM = 0;       // own error and the largest neighbour's
+  uint32_t textureNode = 0;     // the chunk whose imagery it shows, and the affine map into its TileParam
+  glm::vec2 textureScale{1.0f}, textureOffset{0.0f};
+};
+
+struct WantedChunk {
+  TileKey key;
+  float priority = 0;  // greater is more urgent: screen-space error in units of the tolerance, nearer first among equals
+};
+
+struct SelectionCounts {
+  uint32_t considered = 0, frustumCulled = 0, horizonCulled = 0, drawn = 0;
+  uint32_t missing = 0;  // drawn coarser than the tolerance allows because a child was not resident
+};
+
+struct Selection {
+  std::vector<DrawnChunk> draws;    // front to back
+  std::vector<WantedChunk> wanted;  // most urgent first
+  SelectionCounts counts;
+};
+
+// A node is refined when its error is too large on screen and all of its children are resident (Ulrich 2002).
+// Nodes that are visited are marked used in the cache, for eviction.
+void selectChunks(TerrainCache& cache, const View& view, const LodOptions& options, Selection& out);
+
+// Whether the ellipsoid hides the point (scaled space: ecef over the semi-axes). Cesium's test: exact for ellipsoids.
+bool belowHorizon(const Vec3d& eyeScaled, const Vec3d& pointScaled);
+double distanceToBox(const Vec3d& pointEcefM, const OrientedBox& box);
+
+}  // namespace eye
