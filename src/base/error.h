@@ -13,6 +13,7 @@ enum class ErrorKind {
   io,           // reading or writing failed
   noSpace,      // the disk is full
   unsupported,  // understood, but this build, device or version cannot do it
+  device,       // the Vulkan device failed or complained
 };
 
 // `message` is one line for a person: what was wrong, where, and what to do.
@@ -29,7 +30,9 @@ inline tl::unexpected<Error> fail(ErrorKind kind, std::string message) {
 }
 
 // The exit status that CONTRACT promises for an error: 2 for bad usage, else 1.
-inline int exitStatus(const Error& error) { return error.kind == ErrorKind::usage ? 2 : 1; }
+inline int exitStatus(const Error& error) {
+  return error.kind == ErrorKind::usage ? 2 : 1;
+}
 
 [[noreturn]] void checkFailed(const char* expression, const char* file, int line);
 

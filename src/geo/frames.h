@@ -20,8 +20,12 @@ inline constexpr double kSemiMajorM = 6378137.0;
 inline constexpr double kFlattening = 1.0 / 298.257223563;
 inline constexpr double kSemiMinorM = kSemiMajorM * (1.0 - kFlattening);
 
-inline constexpr double radFromDeg(double deg) { return deg * 0.017453292519943295; }
-inline constexpr double degFromRad(double rad) { return rad * 57.29577951308232; }
+inline constexpr double radFromDeg(double deg) {
+  return deg * 0.017453292519943295;
+}
+inline constexpr double degFromRad(double rad) {
+  return rad * 57.29577951308232;
+}
 
 // Exact at the poles and the date line: -180 and 180 degrees give the same point, bit for bit.
 Vec3d ecefFromGeodetic(const Geodetic& g);

@@ -28,7 +28,8 @@ struct View {
 
 View makeView(const Pose& pose, const Frustum& frustum, int widthPx, int heightPx);
 
-// Pixels that one metre covers at one metre's distance, on the view's axis: screen-space error = error * this / distance.
+// Pixels that one metre covers at one metre's distance, on the view's axis: screen-space error = error * this /
+// distance.
 double pixelsPerRadian(const View& view);
 
 // The direction (eye frame, z = 1) of the ray through the centre of pixel (column, row); row 0 is the top.

@@ -11,13 +11,13 @@ namespace eye {
 // Monotonic, nanoseconds since an arbitrary origin: the clock of every time stamp in the program.
 int64_t monotonicNs();
 
-// Starts recording; everything that ends after this call is kept in memory until writeTrace. Call once, any thread.
+// Starts recording; scopes that begin after this call are kept in memory until writeTrace. Call once, any thread.
 void startTrace();
 // Names the calling thread in the trace and to the system (`top -H`); at most 15 characters reach the system.
 void nameThread(const std::string& name);
-// A finished span on a lane that is not a thread of this program, such as "GPU". Any thread.
+// A finished span on a lane that is not a thread of this program, such as "GPU". Both names are literals. Any thread.
 void traceSpan(const char* lane, const char* name, int64_t beginNs, int64_t endNs);
-// Writes the JSON that chrome://tracing and Perfetto open.
+// Writes the JSON that chrome://tracing and Perfetto open: what has ended so far; recording goes on.
 Result<void> writeTrace(const std::string& path);
 
 // `name` must outlive the program (a literal).

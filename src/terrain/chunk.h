@@ -24,13 +24,15 @@ using LatticePoint = glm::i64vec3;
 // high for that doubles its own (ChunkMeta::latticeShift) and keeps its skirts.
 double latticeStepM(int level);
 LatticePoint latticeFromEcef(const Vec3d& ecefM, double stepM);  // nearest
-inline Vec3d ecefFromLattice(const LatticePoint& p, double stepM) { return Vec3d(p) * stepM; }
+inline Vec3d ecefFromLattice(const LatticePoint& p, double stepM) {
+  return Vec3d(p) * stepM;
+}
 
 // 16 bytes, the layout of the GPU's vertex buffer.
 struct ChunkVertex {
-  int16_t x, y, z;        // lattice steps from the chunk's origin, ecef axes
-  uint16_t skirtSides;    // 0 for the surface; on a skirt's lower rim, bit (1 << Side) for each side it hangs from
-  uint16_t s, t;          // TileParam, 0..65535 = 0..1
+  int16_t x, y, z;           // lattice steps from the chunk's origin, ecef axes
+  uint16_t skirtSides;       // 0 for the surface; on a skirt's lower rim, bit (1 << Side) for each side it hangs from
+  uint16_t s, t;             // TileParam, 0..65535 = 0..1
   int16_t normalU, normalV;  // octahedral unit normal, ecef, snorm16
   bool operator==(const ChunkVertex&) const = default;
 };
@@ -42,7 +44,8 @@ static_assert(sizeof(ChunkVertex) == 16);
 struct ChunkMesh {
   std::vector<ChunkVertex> vertices;
   std::vector<uint16_t> indices;
-  std::array<uint16_t, 4> boundary{};  // vertices of the loop's sides, without each side's last; 0 where a side is a point
+  std::array<uint16_t, 4>
+      boundary{};  // vertices of the loop's sides, without each side's last; 0 where a side is a point
 };
 
 // The sides in the order of the boundary loop, counterclockwise from above: south, east, north, west, for an ordinary
@@ -65,13 +68,14 @@ struct ChunkMeta {
   Vec3d sphereCentreEcefM{};
   double sphereRadiusM = 0;
   OrientedBox box;
-  // Horizon point in scaled space (ecef divided by the semi-axes): when it is below the horizon, so is all of the chunk.
+  // Horizon point in scaled space (ecef divided by the semi-axes): when it is below the horizon, so is all of the
+  // chunk.
   Vec3d horizonPointScaled{};
   LatticePoint originLattice{};
-  uint8_t latticeShift = 0;   // the step is latticeStepM(level) * 2^latticeShift; not 0 only across cliffs
-  uint8_t childCount = 0;     // 0 (a leaf) or as many as the key has
-  // Else it shows its nearest ancestor's that has. Pole cells and their children always have: a parameter of an ordinary
-  // cell is no affine function of a pole cell's.
+  uint8_t latticeShift = 0;  // the step is latticeStepM(level) * 2^latticeShift; not 0 only across cliffs
+  uint8_t childCount = 0;    // 0 (a leaf) or as many as the key has
+  // Else it shows its nearest ancestor's that has. Pole cells and their children always have: a parameter of an
+  // ordinary cell is no affine function of a pole cell's.
   bool hasImagery = false;
   double stepM() const;
 };

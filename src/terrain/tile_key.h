@@ -1,11 +1,12 @@
 // The tile grid: surface cells of SDOG-ESSG (paper 004; Yu & Wu 2009). Eight octants, each split at the middles of
-// latitude and longitude; a cell that touches the pole (LG) has one LG child at the pole, spanning all its longitudes, and
-// two children towards the equator (NG); an NG cell has four. Cells in the whole level L: 8 + 16 (4^L - 1) / 3.
-// So a level has 2^L rows from the equator to each pole, and the number of columns in an octant halves at 45, 67.5,
-// 78.75 ... degrees of latitude: a cell may have two neighbours of its own level on its equator side.
+// latitude and longitude; a cell that touches the pole (LG) has one LG child at the pole, spanning all its longitudes,
+// and two children towards the equator (NG); an NG cell has four. Cells in the whole level L: 8 + 16 (4^L - 1) / 3. So
+// a level has 2^L rows from the equator to each pole, and the number of columns in an octant halves at 45, 67.5, 78.75
+// ... degrees of latitude: a cell may have two neighbours of its own level on its equator side.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -30,7 +31,7 @@ struct TileBounds {
 
 class TileKey;
 
-template <int N>
+template <size_t N>
 struct TileList {  // a short list without allocation
   std::array<TileKey, N> items;
   int count = 0;
@@ -77,13 +78,16 @@ class TileKey {
 };
 
 // Cells in a whole level of the globe.
-constexpr uint64_t tilesInLevel(int level) { return 8 + 16 * ((uint64_t{1} << (2 * level)) - 1) / 3; }
+constexpr uint64_t tilesInLevel(int level) {
+  return 8 + 16 * ((uint64_t{1} << (2 * level)) - 1) / 3;
+}
 
 // A place in a cell, both coordinates in [0, 1], counterclockwise seen from above in both hemispheres. What mesh and
 // imagery of a chunk are functions of.
 //   ordinary cells: s west to east, t south to north, linear in degrees;
 //   pole cells: azimuthal about the pole, so that nothing is singular there. With rho = (90 - |lat|) / cell height and
-//   a = (lon - west) / (east - west) * 90 degrees: north s = rho cos a, t = rho sin a; south s = rho sin a, t = rho cos a.
+//   a = (lon - west) / (east - west) * 90 degrees: north s = rho cos a, t = rho sin a; south s = rho sin a, t = rho cos
+//   a.
 struct TileParam {
   double s, t;
 };
