@@ -1,0 +1,36 @@
+#include "app/draw_list.h"
+
+namespace eye {
+namespace {
+
+constexpr double kMeridianQuarterM = 10001966.0;  // equator to pole along the ellipsoid: a level 0 cell's height
+
+}  // namespace
+
+void makeDrawList(const TerrainCache& cache, const Selection& selection, int textureSize, std::vector<ChunkDraw>& draws) {
+  draws.clear();
+  draws.reserve(selection.draws.size());
+  for (const DrawnChunk& drawn : selection.draws) {
+    const CacheNode& node = cache.node(drawn.node);
+    const CacheNode& texture = cache.node(drawn.textureNode);
+    // The box's axes are east, north and up at its centre.
+    const glm::vec3 east(glm::normalize(node.meta.box.halfAxesEcefM[0]));
+    const glm::vec3 north(glm::normalize(node.meta.box.halfAxesEcefM[1]));
+    ChunkDraw& draw = draws.emplace_back();
+    draw.gpu = node.gpu;
+    draw.gpu.indexCount = node.surfaceIndexCount;
+    draw.skirts = node.skirts;
+    draw.skirtMask = drawn.skirtMask;
+    draw.skirtDepthM = static_cast<float>(drawn.skirtDepthM);
+    draw.originLattice = node.meta.originLattice;
+    draw.stepM = node.meta.stepM();
+    draw.upEcef = glm::cross(east, north);
+    draw.outwardEcef = {-north, east, north, -east};
+    draw.textureLayer = static_cast<uint32_t>(texture.gpu.textureLayer);
+    draw.textureScale = drawn.textureScale;
+    draw.textureOffset = drawn.textureOffset;
+    draw.texelM = static_cast<float>(kMeridianQuarterM / static_cast<double>(uint64_t{1} << texture.meta.key.level()) / textureSize);
+  }
+}
+
+}  // namespace eye

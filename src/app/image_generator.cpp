@@ -1,0 +1,210 @@
+#include "app/image_generator.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "app/draw_list.h"
+#include "geo/sun.h"
+#include "telemetry/trace.h"
+
+namespace eye {
+namespace {
+
+constexpr double kDefaultVisibilityM = 60000;
+// The date of --time-of-day: an equinox, when the sun rises due east at six everywhere.
+constexpr int kYear = 2026, kMonth = 3, kDay = 20;
+
+double processCpuMs() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
+}
+
+// Over the middle of the terrain's data, until a live host has spoken.
+Pose waitingPose(const DatabaseInfo& info) {
+  const TileBounds& b = info.dataBounds;
+  return Pose{{(b.southDeg + b.northDeg) / 2, (b.westDeg + b.eastDeg) / 2, 4000.0}, 0, -5, 0};
+}
+
+bool operator==(const View& a, const View& b) {
+  return a.eyeEcefM == b.eyeEcefM && a.eyeFromEcef == b.eyeFromEcef && a.widthPx == b.widthPx && a.heightPx == b.heightPx;
+}
+
+}  // namespace
+
+Result<Sources> Sources::open(const std::vector<std::string>& urls) {
+  Sources sources;
+  for (const std::string& url : urls.empty() ? std::vector<std::string>{"demo://"} : urls) {
+    Result<std::unique_ptr<StateSource>> source = openStateSource(url);
+    if (!source) return tl::unexpected(source.error());
+    sources.sources_.push_back(std::move(*source));
+    sources.description_ += (sources.description_.empty() ? "" : ", ") + url;
+  }
+  return sources;
+}
+
+SourceSample Sources::sample(double timeS) {
+  SourceSample newest;
+  HostCounts counts;
+  bool finished = true;
+  for (const auto& source : sources_) {
+    const SourceSample sample = source->sample(timeS);
+    counts.packets += sample.counts.packets;
+    counts.rejected += sample.counts.rejected;
+    counts.lost += sample.counts.lost;
+    finished = finished && sample.finished;
+    if (sample.valid && (!newest.valid || sample.arrivedNs > newest.arrivedNs)) newest = sample;
+  }
+  newest.counts = counts;
+  newest.finished = finished;
+  return newest;
+}
+
+bool Sources::anyLive() const {
+  return std::any_of(sources_.begin(), sources_.end(), [](const auto& source) { return source->isLive(); });
+}
+
+bool Sources::allFixed() const {
+  return std::all_of(sources_.begin(), sources_.end(), [](const auto& source) { return source->isFixed(); });
+}
+
+Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& options) {
+  auto made = std::unique_ptr<ImageGenerator>(new ImageGenerator);
+  made->options_ = options;
+  Result<Sources> sources = Sources::open(options.hosts);
+  if (!sources) return tl::unexpected(sources.error());
+  made->sources_ = std::move(*sources);
+
+  const bool embedded = options.terrain.empty();
+  const std::string terrain = embedded ? defaultTerrainPath() : options.terrain;
+  std::error_code failed;
+  if (embedded && !std::filesystem::exists(terrain, failed))
+    return fail(ErrorKind::notFound, fmt::format("{}: the embedded terrain is not baked yet; run tools/run.sh, or eyepoint-bake "
+                                                 "demo --out {}, or give --terrain FILE",
+                                                 terrain, terrain));
+  const Result<DatabaseReader> database = DatabaseReader::open(terrain);
+  if (!database) return tl::unexpected(database.error());
+
+  RendererOptions rendererOptions;
+  rendererOptions.widthPx = options.widthPx;
+  rendererOptions.heightPx = options.heightPx;
+  rendererOptions.device = options.device;
+  rendererOptions.validate = options.validate;
+  rendererOptions.window = !options.headless;
+  rendererOptions.fullscreen = options.fullscreen;
+  rendererOptions.monitor = options.monitor;
+  rendererOptions.vsync = options.vsync;
+  rendererOptions.gpuBudgetBytes = options.cacheGpuMiB << 20;
+  rendererOptions.textureSize = database->info().textureSize;
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::create(rendererOptions);
+  if (!renderer) return tl::unexpected(renderer.error());
+  made->renderer_ = std::move(*renderer);
+
+  PagerOptions pagerOptions;
+  pagerOptions.ramBudgetBytes = options.cacheRamMiB << 20;
+  pagerOptions.wait = options.offline;
+  Result<std::unique_ptr<Pager>> pager = Pager::create(terrain, *made->renderer_, pagerOptions);
+  if (!pager) return tl::unexpected(pager.error());
+  made->pager_ = std::move(*pager);
+  made->pose_ = waitingPose(made->pager_->info());
+  spdlog::info("{} on {}, state from {}", terrain, made->renderer_->device().name, made->sources_.description());
+  return made;
+}
+
+View ImageGenerator::currentView(const Pose& pose) const {
+  const int width = renderer_->widthPx(), height = renderer_->heightPx();
+  const Frustum frustum =
+      options_.frustumDeg ? offAxisFrustum((*options_.frustumDeg)[0], (*options_.frustumDeg)[1], (*options_.frustumDeg)[2],
+                                           (*options_.frustumDeg)[3], options_.nearM)
+                          : symmetricFrustum(options_.fovDeg, width, height, options_.nearM);
+  return makeView(pose, frustum, width, height);
+}
+
+Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
+  Lighting lighting;
+  const double julianDay =
+      julianDayFromLocalSolarTime(options_.timeOfDayH, pose_.position.lonDeg, kYear, kMonth, kDay);
+  lighting.sunDirectionEcef = sunDirectionEcef(julianDay);
+  lighting.visibilityM = options_.visibilityM.value_or(host.visibilityM.value_or(kDefaultVisibilityM));
+  return lighting;
+}
+
+// Walks the forest and exchanges with the paging thread; offline again and again until nothing more comes.
+void ImageGenerator::select() {
+  const LodOptions lod{.ssePx = options_.ssePx, .culling = options_.culling};
+  int arrived = 0;
+  do {
+    const TraceScope scope("select");
+    pager_->cache().beginFrame();
+    selectChunks(pager_->cache(), view_, lod, selection_);
+    arrived = pager_->exchange(selection_);
+  } while (options_.offline && arrived > 0);
+}
+
+bool ImageGenerator::sameAsLast(const Lighting& lighting) const {
+  const PagingCounts paging = pager_->counts();
+  return drawn_ && drawn_->view == view_ && drawn_->lighting.sunDirectionEcef == lighting.sunDirectionEcef &&
+         drawn_->lighting.visibilityM == lighting.visibilityM && drawn_->loaded == paging.loaded &&
+         drawn_->evicted == paging.evicted &&
+         std::equal(drawn_->nodes.begin(), drawn_->nodes.end(), selection_.draws.begin(), selection_.draws.end(),
+                    [](uint32_t node, const DrawnChunk& drawn) { return node == drawn.node; });
+}
+
+// One frame, in order.
+Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool readDepth) {
+  const TraceScope scope("frame");
+  const int64_t beganNs = monotonicNs();
+  const double cpuBeganMs = processCpuMs();
+
+  const SourceSample host = sources_.sample(timeS);
+  if (host.valid) pose_ = host.pose;
+  finished_ = host.finished;
+  view_ = currentView(pose_);
+  const Lighting lighting = currentLighting(host);
+  select();
+
+  const bool overlay = renderer_->overlayWanted() != options_.overlay;  // F1 switches what the option says
+  const bool draw = options_.redrawAlways || overlay || !sameAsLast(lighting) || readColour > drawn_->readColour ||
+                    readDepth > drawn_->readDepth;
+  FrameRecord record;
+  if (draw) {
+    makeDrawList(pager_->cache(), selection_, pager_->info().textureSize, draws_);
+    FrameInput input{.view = view_, .draws = draws_, .lighting = lighting, .background = options_.background,
+                     .readColour = readColour, .readDepth = readDepth, .overlay = {}};
+    if (overlay) input.overlay = [this] { overlay_.draw(renderer_->device().name, sources_.description()); };
+    const Result<FrameOutput> output = renderer_->drawFrame(input);
+    if (!output) return tl::unexpected(output.error());
+    output_ = *output;
+    const PagingCounts paging = pager_->counts();
+    drawn_ = Drawn{view_, lighting, {}, paging.loaded, paging.evicted, readColour, readDepth};
+    for (const DrawnChunk& drawn : selection_.draws) drawn_->nodes.push_back(drawn.node);
+  } else {
+    renderer_->presentAgain();
+  }
+
+  const int64_t endedNs = monotonicNs();
+  record.frame = number_++;
+  record.timeS = timeS;
+  record.pose = pose_;
+  record.drawn = draw;
+  record.frameMs = static_cast<double>(endedNs - beganNs) * 1e-6;
+  record.cpuMs = processCpuMs() - cpuBeganMs;
+  record.gpuMs = draw ? output_.gpuMs : 0;
+  if (draw) record.passes = output_.passes;
+  record.triangles = output_.triangles;
+  record.vertices = output_.vertices;
+  record.draws = output_.draws;
+  record.selection = selection_.counts;
+  record.paging = pager_->counts();
+  record.host = host.counts;
+  if (host.arrivedNs != 0) record.hostAgeMs = static_cast<double>(endedNs - host.arrivedNs) * 1e-6;
+  overlay_.add(record);
+  return record;
+}
+
+}  // namespace eye

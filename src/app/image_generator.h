@@ -1,0 +1,80 @@
+// The image generator: what it is made of, and one frame of it. Owner thread: render (the program's main thread).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/frame_record.h"
+#include "app/options.h"
+#include "app/overlay.h"
+#include "link/state_source.h"
+#include "paging/pager.h"
+#include "render/renderer.h"
+
+namespace eye {
+
+// Several hosts: the one that spoke last gives the state; before any has spoken, the first that needs no packets.
+class Sources {
+ public:
+  static Result<Sources> open(const std::vector<std::string>& urls);
+  SourceSample sample(double timeS);
+  bool anyLive() const;
+  bool allFixed() const;
+  const std::string& description() const { return description_; }
+
+ private:
+  std::vector<std::unique_ptr<StateSource>> sources_;
+  std::string description_;
+};
+
+class ImageGenerator {
+ public:
+  static Result<std::unique_ptr<ImageGenerator>> create(const Options& options);
+
+  // Draws the frame of clock `timeS`. Reads back what is asked for: see picture() and depth().
+  Result<FrameRecord> frame(double timeS, bool readColour, bool readDepth);
+  std::span<const uint8_t> picture() const { return output_.rgba; }  // of the last frame drawn; until the next
+  std::span<const float> depth() const { return output_.depth; }
+  int widthPx() const { return output_.widthPx; }
+  int heightPx() const { return output_.heightPx; }
+  const View& view() const { return view_; }
+
+  bool sourceFinished() const { return finished_; }
+  bool sourceIsFixed() const { return sources_.allFixed(); }
+  bool sourceIsLive() const { return sources_.anyLive(); }
+  Renderer& renderer() { return *renderer_; }
+
+ private:
+  ImageGenerator() = default;
+  View currentView(const Pose& pose) const;
+  Lighting currentLighting(const SourceSample& host) const;
+  void select();
+  bool sameAsLast(const Lighting& lighting) const;
+
+  Options options_;
+  Sources sources_;
+  std::unique_ptr<Renderer> renderer_;
+  std::unique_ptr<Pager> pager_;  // after the renderer: it gives its chunks back to it
+  Overlay overlay_;
+
+  uint64_t number_ = 0;
+  Pose pose_;
+  bool finished_ = false;
+  View view_;
+  Selection selection_;
+  std::vector<ChunkDraw> draws_;
+  FrameOutput output_;
+
+  // Of the last frame drawn, for --redraw changed.
+  struct Drawn {
+    View view;
+    Lighting lighting;
+    std::vector<uint32_t> nodes;
+    uint64_t loaded = 0, evicted = 0;
+    bool readColour = false, readDepth = false;
+  };
+  std::optional<Drawn> drawn_;
+};
+
+}  // namespace eye

@@ -1,0 +1,267 @@
+#include "app/options.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/config_file.h"
+
+namespace eye {
+namespace {
+
+constexpr int kLargestSidePx = 8192;
+
+// Numbers behind one another with one separator, nothing else. Finite.
+std::optional<std::vector<double>> splitNumbers(const std::string& text, char separator, size_t count) {
+  std::vector<double> numbers;
+  std::stringstream stream(text);
+  std::string word;
+  while (std::getline(stream, word, separator)) {
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (word.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
+    numbers.push_back(value);
+  }
+  if (numbers.size() != count || (!text.empty() && text.back() == separator)) return std::nullopt;
+  return numbers;
+}
+
+void setSize(Options& options, const std::string& text) {
+  const auto numbers = splitNumbers(text, 'x', 2);
+  if (!numbers || std::floor((*numbers)[0]) != (*numbers)[0] || std::floor((*numbers)[1]) != (*numbers)[1] ||
+      std::min((*numbers)[0], (*numbers)[1]) < 16 || std::max((*numbers)[0], (*numbers)[1]) > kLargestSidePx)
+    throw CLI::ValidationError("--size", fmt::format("'{}' is no size; give WxH from 16x16 to {}x{}, such as 1280x720", text,
+                                                     kLargestSidePx, kLargestSidePx));
+  options.widthPx = static_cast<int>((*numbers)[0]);
+  options.heightPx = static_cast<int>((*numbers)[1]);
+}
+
+void setFrustum(Options& options, const std::string& text) {
+  const auto n = splitNumbers(text, ',', 4);
+  if (!n || (*n)[0] >= (*n)[1] || (*n)[2] >= (*n)[3] || std::abs((*n)[0]) >= 89.9 || std::abs((*n)[1]) >= 89.9 ||
+      std::abs((*n)[2]) >= 89.9 || std::abs((*n)[3]) >= 89.9)
+    throw CLI::ValidationError("--frustum", fmt::format("'{}' is no frustum; give left,right,bottom,top half-angles in degrees, "
+                                                        "signed, within 89.9, such as -30,30,-23.4,23.4",
+                                                        text));
+  options.frustumDeg = std::array<double, 4>{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
+}
+
+void setRate(Options& options, const std::string& text) {
+  if (text == "max") {
+    options.rateHz = std::numeric_limits<double>::infinity();
+    return;
+  }
+  const auto number = splitNumbers(text, ' ', 1);
+  if (!number || (*number)[0] <= 0 || (*number)[0] > 1000)
+    throw CLI::ValidationError("--rate", fmt::format("'{}' is no rate; give hertz in (0, 1000] or max", text));
+  options.rateHz = (*number)[0];
+}
+
+void setBackground(Options& options, const std::string& text) {
+  const auto n = splitNumbers(text, ',', 3);
+  if (!n) throw CLI::ValidationError("--background", fmt::format("'{}' is no colour; give R,G,B from 0 to 1", text));
+  options.background = glm::vec3(glm::dvec3((*n)[0], (*n)[1], (*n)[2]));
+}
+
+bool onOff(const std::string& name, const std::string& text) {
+  if (text == "on" || text == "true") return true;
+  if (text == "off" || text == "false") return false;
+  throw CLI::ValidationError(name, fmt::format("'{}' is neither on nor off", text));
+}
+
+void addTerrainAndHost(CLI::App& app, Options& o) {
+  const char* group = "Terrain and aircraft state";
+  app.add_option("--terrain", o.terrain, "Terrain database made by eyepoint-bake; default: the embedded demo")
+      ->type_name("FILE")->group(group);
+  app.add_option("--host", o.hosts, "Where aircraft state comes from (may be given again):\n"
+                                    "native-fdm://ADDR:PORT, file://TRACK, demo://, pose://lat,lon,alt,h,p,r")
+      ->type_name("URL")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->group(group);
+  app.add_option("--pose", o.pose, "Holds still: lat,lon,alt,heading,pitch,roll (degrees, metres)")
+      ->type_name("P")->group(group);
+}
+
+void addView(CLI::App& app, Options& o) {
+  const char* group = "View";
+  app.add_option_function<std::string>("--size", [&o](const std::string& t) { setSize(o, t); }, "Pixels; default 800x600")
+      ->type_name("WxH")->group(group);
+  app.add_option("--fov", o.fovDeg, "Full horizontal angle, degrees; default 60")
+      ->type_name("DEG")->check(CLI::Range(0.1, 170.0))->group(group);
+  app.add_option_function<std::string>("--frustum", [&o](const std::string& t) { setFrustum(o, t); },
+                                       "Off-axis view: left,right,bottom,top half-angles, signed degrees")
+      ->type_name("L,R,B,T")->group(group);
+  app.add_option("--near", o.nearM, "Near plane, metres; default 1")->type_name("M")->check(CLI::Range(0.01, 1000.0))->group(group);
+  app.add_flag("--headless", o.headless, "No window; works without a display")->group(group);
+  app.add_flag("--fullscreen", o.fullscreen, "The whole monitor (F11 switches)")->group(group);
+  app.add_option("--monitor", o.monitor, "Which monitor, from 0")->type_name("N")->check(CLI::Range(0, 63))->group(group);
+  app.add_option_function<std::string>("--vsync", [&o](const std::string& t) { o.vsync = onOff("--vsync", t); },
+                                       "on (default) or off")
+      ->type_name("on/off")->group(group);
+  app.add_flag("--overlay", o.overlay, "Statistics over the picture from the start (F1 switches)")->group(group);
+}
+
+void addRun(CLI::App& app, Options& o) {
+  const char* group = "Run";
+  app.add_option("--frames", o.frames, "Stop after N frames")->type_name("N")->check(CLI::PositiveNumber)->group(group);
+  app.add_option("--duration", o.durationS, "Stop after S seconds")->type_name("S")->check(CLI::PositiveNumber)->group(group);
+  app.add_option_function<std::string>("--rate", [&o](const std::string& t) { setRate(o, t); },
+                                       "Pace of frames: hertz or max; default 60, max with a fixed pose or --offline")
+      ->type_name("HZ/max")->group(group);
+  app.add_option_function<std::string>(
+         "--redraw", [&o](const std::string& t) { o.redrawAlways = t == "always"; },
+         "changed (default): a frame like the last one is not drawn again; always")
+      ->type_name("changed/always")->check(CLI::IsMember({"changed", "always"}))->group(group);
+  app.add_flag("--offline", o.offline, "Deterministic: fixed 60 Hz clock, every frame waits for its terrain")->group(group);
+}
+
+void addQuality(CLI::App& app, Options& o) {
+  const char* group = "Quality and budgets";
+  app.add_option("--sse", o.ssePx, "Tolerated screen-space error, pixels; default 1")
+      ->type_name("PX")->check(CLI::Range(0.05, 64.0))->group(group);
+  app.add_option_function<std::string>(
+         "--culling", [&o](const std::string& t) { o.culling = t == "none" ? CullingScheme::none : CullingScheme::frustum; },
+         "none, or frustum (default): view frustum and horizon")
+      ->type_name("none/frustum")->check(CLI::IsMember({"none", "frustum"}))->group(group);
+  app.add_option("--cache-ram", o.cacheRamMiB, "Budget for decoded terrain in memory; default 96")
+      ->type_name("MIB")->check(CLI::Range(8, 1 << 20))->group(group);
+  app.add_option("--cache-gpu", o.cacheGpuMiB, "Budget for terrain on the GPU; default 160")
+      ->type_name("MIB")->check(CLI::Range(16, 1 << 20))->group(group);
+  app.add_option("--time-of-day", o.timeOfDayH, "Local solar time, hours; default 9")
+      ->type_name("H")->check(CLI::Range(0.0, 24.0))->group(group);
+  app.add_option("--visibility", o.visibilityM, "Meteorological visibility, metres; default the host's, else 60000")
+      ->type_name("M")->check(CLI::Range(10.0, 1.0e6))->group(group);
+}
+
+void addOutputs(CLI::App& app, Options& o) {
+  const char* group = "Outputs";
+  app.add_option("--screenshot", o.screenshot, "The last frame as a picture")->type_name("FILE.png")->group(group);
+  app.add_option("--distance-map", o.distanceMap, "The last frame's slant range in metres, NaN for sky")
+      ->type_name("FILE.tif")->group(group);
+  app.add_option("--record", o.record, "All frames as a film (needs ffmpeg)")->type_name("FILE.mp4")->group(group);
+  app.add_option("--frames-dir", o.framesFolder, "All frames as pictures")->type_name("DIR")->group(group);
+  app.add_option("--stats", o.stats, "One JSON object a frame")->type_name("FILE.jsonl")->group(group);
+  app.add_option("--summary", o.summary, "One JSON object for the run")->type_name("FILE.json")->group(group);
+  app.add_option("--trace", o.trace, "Chrome/Perfetto trace of threads and GPU passes")->type_name("FILE.json")->group(group);
+}
+
+void addDiagnosis(CLI::App& app, Options& o) {
+  const char* group = "Device and diagnosis";
+  app.add_flag("--list-devices", o.listDevices, "The Vulkan devices, and which can be used")->group(group);
+  app.add_option("--device", o.device, "Use the device whose name contains NAME")->type_name("NAME")->group(group);
+  app.add_flag("--validate", o.validate, "Vulkan validation on; any message fails the run")->group(group);
+  app.add_option("--log-level", o.logLevel, "debug, info (default), warn or error")
+      ->check(CLI::IsMember({"debug", "info", "warn", "error"}))->group(group);
+  app.add_option_function<std::string>("--background", [&o](const std::string& t) { setBackground(o, t); },
+                                       "A flat colour instead of sky and haze: shows holes")
+      ->type_name("R,G,B")->group(group);
+}
+
+// What the file says, for each option that the command line left out.
+Result<void> applyConfig(CLI::App& app, const std::string& path) {
+  const Result<ConfigValues> values = readConfigFile(path);
+  if (!values) return tl::unexpected(values.error());
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames())
+      if (name != "help" && name != "version" && name != "config") known.push_back(name);
+  for (const auto& [key, words] : *values) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      const std::string nearest = nearestWord(key, known);
+      return fail(ErrorKind::usage, fmt::format("{}: unknown key '{}'; {}", path, key,
+                                                nearest.empty() ? "see eyepoint --help for the keys"
+                                                                : fmt::format("did you mean '{}'?", nearest)));
+    }
+    CLI::Option* option = app.get_option("--" + key);
+    if (option->count() > 0) continue;
+    try {
+      if (words.size() > 1 && option->get_expected_max() <= 1 && key != "host")
+        return fail(ErrorKind::usage, fmt::format("{}: {} takes one value", path, key));
+      for (const std::string& word : words) option->add_result(word);
+      option->run_callback();
+    } catch (const CLI::Error& error) {
+      return fail(ErrorKind::usage, fmt::format("{}: {}: {}", path, key, error.what()));
+    }
+  }
+  return {};
+}
+
+std::string oneLine(std::string text) {
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text;
+}
+
+}  // namespace
+
+std::string defaultTerrainPath() {
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  const std::string folder = data != nullptr && *data != '\0' ? data : std::string(home != nullptr ? home : ".") + "/.local/share";
+  return folder + "/eyepoint/demo.eyt";
+}
+
+std::string Options::settingsLine() const {
+  return fmt::format("size={}x{} sse={} culling={} cache-ram={} cache-gpu={} offline={} redraw={}", widthPx, heightPx, ssePx,
+                     culling == CullingScheme::none ? "none" : "frustum", cacheRamMiB, cacheGpuMiB, offline,
+                     redrawAlways ? "always" : "changed");
+}
+
+ParsedOptions parseOptions(int argc, const char* const* argv) {
+  ParsedOptions parsed;
+  Options& options = parsed.options;
+  CLI::App app{"Eyepoint draws a flight simulator's out-the-window view from a terrain database.", "eyepoint"};
+  app.footer(
+      "Examples:\n"
+      "  eyepoint                                                    a tour of the embedded terrain in a window\n"
+      "  eyepoint --terrain alps.eyt --pose 45.98,7.66,4000,200,-10,0\n"
+      "  eyepoint --host native-fdm://:5550                          flown by JSBSim or FlightGear\n"
+      "  eyepoint --headless --offline --pose 49.25,20.1,2600,180,0,0 --terrain tatra.eyt --screenshot tatra.png");
+  std::string config;
+  app.add_option("--config", config, "TOML file with a key for each option; the command line wins")->type_name("FILE");
+  app.set_version_flag("--version", std::string("eyepoint ") + EYE_VERSION);
+  addTerrainAndHost(app, options);
+  addView(app, options);
+  addRun(app, options);
+  addQuality(app, options);
+  addOutputs(app, options);
+  addDiagnosis(app, options);
+  const auto refuse = [&](const std::string& message) {
+    parsed.exitStatus = 2;
+    parsed.text = oneLine(message);
+    return parsed;
+  };
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    parsed.exitStatus = 0;
+    parsed.text = app.help();
+    return parsed;
+  } catch (const CLI::CallForVersion& version) {
+    parsed.exitStatus = 0;
+    parsed.text = std::string(version.what()) + "\n";
+    return parsed;
+  } catch (const CLI::ExtrasError& error) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options()) known.push_back(option->get_name(false, true));
+    std::string word = app.remaining().empty() ? "" : app.remaining().front();
+    const std::string nearest = nearestWord(word.substr(0, word.find('=')), known);
+    return refuse(word.empty() ? std::string(error.what())
+                               : fmt::format("'{}' is no option of eyepoint; {}", word,
+                                             nearest.empty() ? "see eyepoint --help" : fmt::format("did you mean {}?", nearest)));
+  } catch (const CLI::Error& error) {
+    return refuse(fmt::format("{}; see eyepoint --help", error.what()));
+  }
+  if (!config.empty()) {
+    const Result<void> applied = applyConfig(app, config);
+    if (!applied) return refuse(applied.error().message);
+  }
+  if (!options.pose.empty() && !options.hosts.empty())
+    return refuse("--pose and --host both say where the eye is; give one of them");
+  if (!options.pose.empty()) options.hosts.push_back("pose://" + options.pose);
+  return parsed;
+}
+
+}  // namespace eye

@@ -1,0 +1,69 @@
+// What the user asked for: the command line over the configuration file over the defaults.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "base/error.h"
+#include "paging/lod_select.h"
+
+namespace eye {
+
+struct Options {
+  // Terrain and where the state comes from.
+  std::string terrain;  // empty: the embedded demo
+  std::vector<std::string> hosts;
+  std::string pose;
+
+  // The channel's view.
+  int widthPx = 800, heightPx = 600;
+  double fovDeg = 60;
+  std::optional<std::array<double, 4>> frustumDeg;  // left, right, bottom, top
+  double nearM = 1;
+
+  // The window.
+  bool headless = false, fullscreen = false, vsync = true;
+  int monitor = 0;
+
+  // The run.
+  std::optional<uint64_t> frames;
+  std::optional<double> durationS;
+  std::optional<double> rateHz;  // unset: the default of the source; infinity: "max"
+  bool redrawAlways = false, offline = false;
+
+  // Quality and budgets.
+  double ssePx = 1;
+  CullingScheme culling = CullingScheme::frustum;
+  uint64_t cacheRamMiB = 96, cacheGpuMiB = 160;
+
+  // Light and air. Local solar time at the eye, hours; unset visibility: the host's, else 60 km.
+  double timeOfDayH = 9.0;
+  std::optional<double> visibilityM;
+
+  // Outputs.
+  std::string screenshot, distanceMap, record, stats, summary, trace;
+  std::string framesFolder;               // every frame as a PNG
+  std::optional<glm::vec3> background;    // instead of sky and haze
+
+  // Device and diagnosis.
+  bool listDevices = false, validate = false, overlay = false;
+  std::string device, logLevel = "info";
+
+  std::string settingsLine() const;  // for the summary: what was in force, one line
+};
+
+// What main should do: run with `options`, or print `text` and leave with `status` (help, version, an error).
+struct ParsedOptions {
+  Options options;
+  std::optional<int> exitStatus;
+  std::string text;
+};
+ParsedOptions parseOptions(int argc, const char* const* argv);
+
+// $XDG_DATA_HOME/eyepoint/demo.eyt, else ~/.local/share/eyepoint/demo.eyt.
+std::string defaultTerrainPath();
+
+}  // namespace eye

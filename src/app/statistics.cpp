@@ -1,0 +1,158 @@
+#include "app/statistics.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace eye {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kFrameBudgetMs = 1000.0 / 60.0;
+
+Json jsonOf(const FrameRecord& r) {
+  Json passes = Json::object();
+  for (const PassTime& pass : r.passes) passes[pass.name] = pass.ms;
+  const SelectionCounts& s = r.selection;
+  Json chunks = {{"considered", s.considered},
+                 {"frustum_culled", s.frustumCulled},
+                 {"horizon_culled", s.horizonCulled},
+                 {"backface_culled", 0},
+                 {"occlusion_culled", 0},
+                 {"drawn", s.drawn}};
+  // A chunk is drawn as a whole: its clusters are itself.
+  Json clusters = chunks;
+  return Json{{"frame", r.frame},
+              {"time_s", r.timeS},
+              {"pose",
+               {r.pose.position.latDeg, r.pose.position.lonDeg, r.pose.position.altM, r.pose.headingDeg, r.pose.pitchDeg,
+                r.pose.rollDeg}},
+              {"drawn", r.drawn},
+              {"frame_ms", r.frameMs},
+              {"cpu_ms", r.cpuMs},
+              {"gpu_ms", r.gpuMs},
+              {"pass_ms", passes},
+              {"triangles", r.triangles},
+              {"vertices", r.vertices},
+              {"draws", r.draws},
+              {"chunks", chunks},
+              {"clusters", clusters},
+              {"depth_map", "off"},
+              {"membership", {{"altitude", nullptr}, {"pitch", nullptr}, {"sum", nullptr}}},
+              {"paging",
+               {{"requested", r.paging.requested},
+                {"loaded", r.paging.loaded},
+                {"evicted", r.paging.evicted},
+                {"resident", r.paging.resident},
+                {"ram_bytes", r.paging.ramBytes},
+                {"gpu_bytes", r.paging.gpuBytes},
+                {"missing", s.missing},
+                {"damaged", r.paging.damaged},
+                {"bytes_read", r.paging.bytesRead}}},
+              {"prediction", {{"horizon_s", nullptr}, {"error_m", nullptr}, {"radius_m", nullptr}}},
+              {"host",
+               {{"packets", r.host.packets},
+                {"rejected", r.host.rejected},
+                {"lost", r.host.lost},
+                {"age_ms", r.hostAgeMs < 0 ? Json(nullptr) : Json(r.hostAgeMs)}}}};
+}
+
+Error writeError(const std::string& path) {
+  return Error{errno == ENOSPC ? ErrorKind::noSpace : ErrorKind::io,
+               fmt::format("{}: cannot write: {}; free space or choose another place", path, std::strerror(errno))};
+}
+
+// Of sorted values, linear between neighbours (the usual definition of numpy and spreadsheets).
+double quantile(const std::vector<double>& sorted, double q) {
+  const double place = q * static_cast<double>(sorted.size() - 1);
+  const size_t below = static_cast<size_t>(place);
+  const size_t above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
+}
+
+}  // namespace
+
+Result<StatisticsFile> StatisticsFile::create(const std::string& path) {
+  StatisticsFile file;
+  file.path_ = path;
+  file.file_.reset(std::fopen(path.c_str(), "w"));
+  if (!file.file_) return tl::unexpected(writeError(path));
+  return file;
+}
+
+Result<void> StatisticsFile::write(const FrameRecord& record) {
+  const std::string line = jsonOf(record).dump() + "\n";
+  if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size()) return tl::unexpected(writeError(path_));
+  return {};
+}
+
+Result<void> StatisticsFile::close() {
+  if (std::fclose(file_.release()) != 0) return tl::unexpected(writeError(path_));
+  return {};
+}
+
+TimeSummary summarize(std::vector<double> values) {
+  TimeSummary summary;
+  if (values.empty()) return summary;
+  std::sort(values.begin(), values.end());
+  for (const double value : values) summary.mean += value / static_cast<double>(values.size());
+  summary.median = quantile(values, 0.5);
+  summary.p95 = quantile(values, 0.95);
+  summary.p99 = quantile(values, 0.99);
+  summary.max = values.back();
+  return summary;
+}
+
+void RunSummary::add(const FrameRecord& record) {
+  ++frames_;
+  bytesRead_ = record.paging.bytesRead;
+  if (!record.drawn) return;
+  frameMs_.push_back(record.frameMs);
+  overBudget_ += record.frameMs > kFrameBudgetMs ? 1 : 0;
+  missingChunkFrames_ += record.selection.missing > 0 ? 1 : 0;
+  triangles_ += static_cast<double>(record.triangles);
+  vertices_ += static_cast<double>(record.vertices);
+  cpuMs_ += record.cpuMs;
+}
+
+Result<void> RunSummary::write(const std::string& path, const std::string& device, double startupMs,
+                               const std::string& settings) const {
+  const TimeSummary times = summarize(frameMs_);
+  const double drawn = std::max<double>(1, static_cast<double>(frameMs_.size()));
+  const Json json{{"frames", frames_},
+                  {"frames_drawn", frameMs_.size()},
+                  {"frame_ms",
+                   {{"mean", times.mean}, {"median", times.median}, {"p95", times.p95}, {"p99", times.p99}, {"max", times.max}}},
+                  {"fps", times.mean > 0 ? 1000.0 / times.mean : 0.0},
+                  {"cpu_ms_mean", cpuMs_ / drawn},
+                  {"over_budget_frames", overBudget_},
+                  {"triangles_mean", triangles_ / drawn},
+                  {"vertices_mean", vertices_ / drawn},
+                  {"missing_chunk_frames", missingChunkFrames_},
+                  {"bytes_read", bytesRead_},
+                  {"peak_rss_bytes", peakRssBytes()},
+                  {"device", device},
+                  {"startup_ms", startupMs},
+                  {"settings", settings}};
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  if (file == nullptr) return tl::unexpected(writeError(path));
+  const std::string text = json.dump(2) + "\n";
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  if (std::fclose(file) != 0 || !written) return tl::unexpected(writeError(path));
+  return {};
+}
+
+uint64_t peakRssBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace eye
