@@ -1,0 +1,129 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include "app/config_file.h"
+#include "app/options.h"
+
+using namespace eye;
+
+namespace {
+
+ParsedOptions parse(std::vector<const char*> words) {
+  words.insert(words.begin(), "eyepoint");
+  return parseOptions(static_cast<int>(words.size()), words.data());
+}
+
+struct TomlFile {
+  std::string path = (std::filesystem::temp_directory_path() / ("eyepoint_options_" + std::to_string(getpid()) + ".toml")).string();
+  explicit TomlFile(const std::string& text) { std::ofstream(path) << text; }
+  ~TomlFile() { std::filesystem::remove(path); }
+};
+
+}  // namespace
+
+TEST_CASE("the command line sets what it says") {
+  const ParsedOptions parsed = parse({"--size", "1280x720", "--fov", "75", "--frustum=-30,20,-10,15", "--rate", "max", "--vsync",
+                                      "off", "--sse", "0.5", "--culling", "none", "--frames", "10", "--pose", "1,2,3,4,5,6"});
+  REQUIRE_FALSE(parsed.exitStatus);
+  const Options& o = parsed.options;
+  CHECK(o.widthPx == 1280);
+  CHECK(o.heightPx == 720);
+  CHECK(o.fovDeg == 75);
+  CHECK(*o.frustumDeg == std::array<double, 4>{-30, 20, -10, 15});
+  CHECK(std::isinf(*o.rateHz));
+  CHECK_FALSE(o.vsync);
+  CHECK(o.ssePx == 0.5);
+  CHECK(o.culling == CullingScheme::none);
+  CHECK(*o.frames == 10);
+  CHECK(o.hosts == std::vector<std::string>{"pose://1,2,3,4,5,6"});
+}
+
+TEST_CASE("hosts may be given again") {
+  const ParsedOptions parsed = parse({"--host", "demo://", "--host", "native-fdm://:5550"});
+  REQUIRE_FALSE(parsed.exitStatus);
+  CHECK(parsed.options.hosts == std::vector<std::string>{"demo://", "native-fdm://:5550"});
+}
+
+TEST_CASE("bad usage is one line and exit status 2") {
+  const std::vector<std::vector<const char*>> bad{{"--size", "800"},
+                                                  {"--size", "0x600"},
+                                                  {"--size", "1e9x5"},
+                                                  {"--size", "800x600x"},
+                                                  {"--fov", "nan"},
+                                                  {"--fov", "180"},
+                                                  {"--frustum", "10,-10,-5,5"},
+                                                  {"--frustum", "-10,10,-5"},
+                                                  {"--rate", "-3"},
+                                                  {"--rate", "fast"},
+                                                  {"--vsync", "maybe"},
+                                                  {"--sse", "0"},
+                                                  {"--culling", "all"},
+                                                  {"--frames", "0"},
+                                                  {"--redraw", "never"},
+                                                  {"--colour"},
+                                                  {"stray"},
+                                                  {"--pose", "1,2,3,4,5,6", "--host", "demo://"},
+                                                  {"--config", "/nonexistent.toml"}};
+  for (const auto& words : bad) {
+    const ParsedOptions parsed = parse(words);
+    INFO(words[0] << " " << (words.size() > 1 ? words[1] : ""));
+    CHECK(parsed.exitStatus == 2);
+    CHECK_FALSE(parsed.text.empty());
+    CHECK(parsed.text.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("a slip of the keyboard is answered with the nearest option") {
+  CHECK(parse({"--screenshoot", "a.png"}).text.find("--screenshot") != std::string::npos);
+  CHECK(nearestWord("cache-rm", {"cache-ram", "cache-gpu", "size"}) == "cache-ram");
+  CHECK(nearestWord("zzzzzzzz", {"cache-ram", "size"}).empty());
+}
+
+TEST_CASE("help teaches and version tells") {
+  const ParsedOptions help = parse({"--help"});
+  CHECK(help.exitStatus == 0);
+  for (const char* word : {"--terrain", "--host", "--pose", "--sse", "Examples:", "native-fdm://"})
+    CHECK(help.text.find(word) != std::string::npos);
+  CHECK(parse({"--version"}).text.rfind("eyepoint ", 0) == 0);
+}
+
+TEST_CASE("the configuration file gives what the command line leaves out") {
+  const TomlFile file("size = \"640x480\"\nsse = 2\nheadless = true\nhost = [\"demo://\", \"native-fdm://:5550\"]\nvsync = \"off\"\n");
+  const ParsedOptions parsed = parse({"--config", file.path.c_str(), "--sse", "4"});
+  INFO(parsed.text);
+  REQUIRE_FALSE(parsed.exitStatus);
+  CHECK(parsed.options.widthPx == 640);
+  CHECK(parsed.options.ssePx == 4);
+  CHECK(parsed.options.headless);
+  CHECK_FALSE(parsed.options.vsync);
+  CHECK(parsed.options.hosts.size() == 2);
+}
+
+TEST_CASE("the configuration file's mistakes name file, key and cure") {
+  const auto message = [](const std::string& text) {
+    const TomlFile file(text);
+    const ParsedOptions parsed = parse({"--config", file.path.c_str()});
+    CHECK(parsed.exitStatus == 2);
+    CHECK(parsed.text.find(".toml") != std::string::npos);
+    CHECK(parsed.text.find('\n') == std::string::npos);
+    return parsed.text;
+  };
+  CHECK(message("terain = \"x.eyt\"\n").find("did you mean 'terrain'") != std::string::npos);
+  CHECK(message("sse = [1, 2]\n").find("one value") != std::string::npos);
+  CHECK(message("sse = \"coarse\"\n").find("sse") != std::string::npos);
+  CHECK(message("size = 800\n").find("WxH") != std::string::npos);
+  CHECK(message("sse = = 1\n").find(":1:") != std::string::npos);
+  CHECK(message("[window]\nsize = 1\n").find("window") != std::string::npos);
+}
+
+TEST_CASE("every documented key of the example configuration is known") {
+  const ParsedOptions parsed = parse({"--config", EYE_SOURCE_DIR "/config/eyepoint.toml"});
+  INFO(parsed.text);
+  CHECK_FALSE(parsed.exitStatus);
+}
