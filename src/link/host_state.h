@@ -11,8 +11,8 @@ namespace eye {
 
 struct HostState {
   Pose pose;
-  int64_t arrivedNs = 0;                  // monotonicNs() when the packet that carried it came in
-  std::optional<double> hostTimeS;        // the host's own clock where the protocol has one
+  int64_t arrivedNs = 0;            // monotonicNs() when the packet that carried it came in
+  std::optional<double> hostTimeS;  // the host's own clock where the protocol has one
   std::optional<double> visibilityM;
 };
 

@@ -14,10 +14,10 @@ struct SourceSample {
   Pose pose;
   HostCounts counts;
   std::optional<double> visibilityM;
-  int64_t arrivedNs = 0;   // of the newest packet; 0 without a live host
-  bool live = false;       // fed by packets
-  bool valid = false;      // false until the first packet of a live host
-  bool finished = false;   // a recording or scenario is over (it holds its last pose)
+  int64_t arrivedNs = 0;  // of the newest packet; 0 without a live host
+  bool live = false;      // fed by packets
+  bool valid = false;     // false until the first packet of a live host
+  bool finished = false;  // a recording or scenario is over (it holds its last pose)
 };
 
 class StateSource {

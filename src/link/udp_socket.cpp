@@ -1,0 +1,115 @@
+#include "link/udp_socket.h"
+
+#include <fmt/format.h>
+#include <netdb.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace eye {
+namespace {
+
+Result<sockaddr_in> resolve(const Endpoint& endpoint) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  const int problem = getaddrinfo(endpoint.address.c_str(), nullptr, &hints, &found);
+  if (problem != 0 || found == nullptr)
+    return fail(ErrorKind::usage, fmt::format("'{}' is no IPv4 address or known host ({})", endpoint.address,
+                                              problem != 0 ? gai_strerror(problem) : "no answer"));
+  sockaddr_in address{};
+  std::memcpy(&address, found->ai_addr, sizeof(address));
+  freeaddrinfo(found);
+  address.sin_port = htons(endpoint.port);
+  return address;
+}
+
+Result<int> newSocket() {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd < 0) return fail(ErrorKind::io, fmt::format("cannot make a UDP socket: {}", std::strerror(errno)));
+  return fd;
+}
+
+const sockaddr* asSockaddr(const sockaddr_in& address) {
+  return reinterpret_cast<const sockaddr*>(&address);
+}
+
+}  // namespace
+
+Result<UdpSocket> UdpSocket::listenOn(const Endpoint& endpoint) {
+  const auto address = resolve(endpoint);
+  if (!address) return tl::unexpected(address.error());
+  const auto fd = newSocket();
+  if (!fd) return tl::unexpected(fd.error());
+  UdpSocket udp(*fd);
+
+  // Room for a second of bursts while this thread does not run: 60 Hz of the largest state packets, many times over.
+  const int receiveBytes = 1 << 20;
+  setsockopt(*fd, SOL_SOCKET, SO_RCVBUF, &receiveBytes, sizeof(receiveBytes));
+  if (bind(*fd, asSockaddr(*address), sizeof(*address)) == 0) return udp;
+
+  const int problem = errno;
+  const std::string place = fmt::format("{}:{}", endpoint.address, endpoint.port);
+  if (problem == EADDRINUSE)
+    return fail(ErrorKind::io, fmt::format("UDP port {} is taken by another program; stop it (ss -ulnp shows which) "
+                                           "or choose another port",
+                                           place));
+  if (problem == EADDRNOTAVAIL)
+    return fail(ErrorKind::io, fmt::format("cannot listen on {}: this machine has no such address; use 0.0.0.0 for all "
+                                           "of its addresses",
+                                           place));
+  if (problem == EACCES)
+    return fail(ErrorKind::io, fmt::format("cannot listen on UDP {}: not allowed; use a port above 1023", place));
+  return fail(ErrorKind::io, fmt::format("cannot listen on UDP {}: {}", place, std::strerror(problem)));
+}
+
+Result<UdpSocket> UdpSocket::connectTo(const Endpoint& endpoint) {
+  const auto address = resolve(endpoint);
+  if (!address) return tl::unexpected(address.error());
+  const auto fd = newSocket();
+  if (!fd) return tl::unexpected(fd.error());
+  UdpSocket udp(*fd);
+  if (connect(*fd, asSockaddr(*address), sizeof(*address)) == 0) return udp;
+  return fail(ErrorKind::io,
+              fmt::format("cannot send UDP to {}:{}: {}", endpoint.address, endpoint.port, std::strerror(errno)));
+}
+
+UdpSocket::UdpSocket(UdpSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+
+UdpSocket& UdpSocket::operator=(UdpSocket&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  return *this;
+}
+
+UdpSocket::~UdpSocket() {
+  if (fd_ >= 0) close(fd_);
+}
+
+bool UdpSocket::wait(int timeoutMs) const {
+  pollfd events{fd_, POLLIN, 0};
+  return poll(&events, 1, timeoutMs) > 0;
+}
+
+std::optional<std::span<const std::byte>> UdpSocket::receive(std::span<std::byte> buffer) const {
+  const ssize_t bytes = recv(fd_, buffer.data(), buffer.size(), 0);
+  if (bytes < 0) return std::nullopt;
+  return buffer.first(static_cast<size_t>(bytes));
+}
+
+bool UdpSocket::send(std::span<const std::byte> payload) const {
+  return ::send(fd_, payload.data(), payload.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(payload.size());
+}
+
+uint16_t UdpSocket::port() const {
+  sockaddr_in address{};
+  socklen_t length = sizeof(address);
+  if (getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &length) != 0) return 0;
+  return ntohs(address.sin_port);
+}
+
+}  // namespace eye

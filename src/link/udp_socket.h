@@ -1,0 +1,42 @@
+// An IPv4 UDP socket: bound to receive, or connected to send. Move-only; closes itself.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "link/endpoint.h"
+
+namespace eye {
+
+// The largest payload that a UDP datagram over IPv4 can have.
+inline constexpr size_t kMaxDatagramBytes = 65507;
+
+class UdpSocket {
+ public:
+  // Listens on the address; port 0 lets the system choose one (see `port`).
+  static Result<UdpSocket> listenOn(const Endpoint& endpoint);
+  static Result<UdpSocket> connectTo(const Endpoint& endpoint);
+
+  UdpSocket(UdpSocket&& other) noexcept;
+  UdpSocket& operator=(UdpSocket&& other) noexcept;
+  ~UdpSocket();
+
+  // Waits at most `timeoutMs` for a datagram; true when one is there.
+  bool wait(int timeoutMs) const;
+  // The next datagram that has already arrived, or nothing. The span points into `buffer`, which should hold
+  // kMaxDatagramBytes: what does not fit is lost.
+  std::optional<std::span<const std::byte>> receive(std::span<std::byte> buffer) const;
+  // False when the datagram was not taken, for instance because nobody listens at the other end (yet).
+  bool send(std::span<const std::byte> payload) const;
+  uint16_t port() const;  // the local one
+
+ private:
+  explicit UdpSocket(int fd) : fd_(fd) {}
+  int fd_ = -1;
+};
+
+}  // namespace eye
