@@ -15,7 +15,7 @@ namespace eye {
 
 void DatasetCloser::operator()(GDALDataset* dataset) const {
   GdalMessages quiet;
-  GDALClose(GDALDataset::ToHandle(dataset));
+  dataset->ReleaseRef();  // a view on it may hold it longer
 }
 
 void initGdal() {
