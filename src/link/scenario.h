@@ -15,7 +15,9 @@ struct Scenario {
   Pose (*poseAt)(double timeS) = nullptr;  // clamped to [0, durationS]
 };
 
-// takeoff, low-level, orbit, approach, descent-from-space: over the embedded demo terrain (36.63 N 128.35 E).
+inline constexpr const char* kDefaultScenario = "tour";  // of demo:// without a name
+
+// takeoff, low-level, orbit, approach, descent-from-space, tour: over the embedded demo terrain (36.63 N 128.35 E).
 const std::vector<Scenario>& scenarios();
 Result<Scenario> findScenario(const std::string& name);  // usage error that lists the names
 

@@ -1,0 +1,134 @@
+#include "link/scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geo/demo_site.h"
+#include "link/flight_plan.h"
+
+namespace eye {
+namespace {
+
+constexpr Geodetic kSite = {kDemoRunwayLatDeg, kDemoRunwayLonDeg, kDemoRunwayElevationM};
+constexpr double kCockpitM = 4;  // the eye above the runway while the wheels are on it
+constexpr double kOnRunwayM = kDemoRunwayElevationM + kCockpitM;
+// Flights over mountains whose shape they do not know keep this high.
+constexpr double kClearM = kDemoHighestTerrainM + 150;
+
+Geodetic placeAt(double eastM, double northM, double altM) {
+  Geodetic place = offsetBy(kSite, eastM, northM);
+  place.altM = altM;
+  return place;
+}
+
+// Legs: seconds, speed at the end (m/s), turn (degrees/s, clockwise), climb (m/s).
+
+const FlightPath& tour() {
+  static const FlightPath path({placeAt(-1350, 0, kOnRunwayM),
+                                kDemoRunwayHeadingDeg,
+                                0,
+                                {{22, 85, 0, 0},
+                                 {10, 120, 0, 20},
+                                 {16, 155, -2.2, 48},
+                                 {20, 165, 0, 48},
+                                 {8, 165, 2.4, 10},
+                                 {14, 165, -1.5, 0}}});
+  return path;
+}
+
+const FlightPath& takeoff() {
+  static const FlightPath path({placeAt(-1350, 0, kOnRunwayM),
+                                kDemoRunwayHeadingDeg,
+                                0,
+                                {{30, 75, 0, 0}, {15, 85, 0, 8}, {15, 95, 0, 12}, {15, 95, -2, 12}}});
+  return path;
+}
+
+const FlightPath& lowLevel() {
+  static const FlightPath path({placeAt(-20'000, 8'000, kClearM),
+                                80,
+                                150,
+                                {{10, 150, 0, 0},
+                                 {12, 150, 2.2, 4},
+                                 {14, 150, -2.2, 4},
+                                 {10, 155, 0, -2},
+                                 {14, 160, -2.2, -2},
+                                 {16, 160, 2.4, 6},
+                                 {10, 155, 0, -6},
+                                 {12, 150, 2.0, -3},
+                                 {12, 150, -2.4, 3},
+                                 {10, 150, 0, 0}}});
+  return path;
+}
+
+// Three degrees of glide, a flare, and the roll-out to walking pace.
+const FlightPath& approach() {
+  constexpr double kGlideS = 100, kFlareS = 8, kSinkMS = 3.85, kFlareSinkMS = 0.9;
+  constexpr double kTouchdownEastM = -1200;  // 300 m behind the threshold
+  constexpr double kGlideM = kGlideS * (75 + 72) / 2, kFlareM = kFlareS * (72 + 66) / 2;
+  static const FlightPath path(
+      {placeAt(kTouchdownEastM - kGlideM - kFlareM, 0, kOnRunwayM + kGlideS * kSinkMS + kFlareS * kFlareSinkMS),
+       kDemoRunwayHeadingDeg,
+       75,
+       {{kGlideS, 72, 0, -kSinkMS}, {kFlareS, 66, 0, -kFlareSinkMS}, {22, 8, 0, 0}}});
+  return path;
+}
+
+constexpr double kOrbitRadiusM = 6000, kOrbitSpeedMS = 150;
+constexpr double kOrbitS = 2 * std::numbers::pi * kOrbitRadiusM / kOrbitSpeedMS;  // one turn: it can be looped
+
+Pose orbitAt(double timeS) {
+  const auto positionAt = [](double t) {
+    const double angle = 2 * std::numbers::pi * t / kOrbitS;  // clockwise from north
+    return placeAt(kOrbitRadiusM * std::sin(angle), kOrbitRadiusM * std::cos(angle), kClearM + 150);
+  };
+  return poseAlongPath(positionAt, std::clamp(timeS, 0.0, kOrbitS), 0);
+}
+
+// 0 to 1 with two continuous derivatives at both ends.
+double smootherStep(double u) {
+  return u * u * u * (u * (6 * u - 15) + 10);
+}
+
+constexpr double kDescentS = 75, kDescentFromM = 2e7, kDescentToM = 2500;
+
+// The height falls by the same factor each second, so that the ground comes nearer evenly; the view rises to the
+// horizon.
+Pose descentAt(double timeS) {
+  const double u = smootherStep(std::clamp(timeS / kDescentS, 0.0, 1.0));
+  const double altM = kDescentFromM * std::pow(kDescentToM / kDescentFromM, u);
+  constexpr double kEndSouthM = 14'000, kEndPitchDeg = -12;
+  return {placeAt(0, -kEndSouthM * u, altM), 0, -90 + (90 + kEndPitchDeg) * u, 0};
+}
+
+}  // namespace
+
+const std::vector<Scenario>& scenarios() {
+  static const std::vector<Scenario> all = {
+      {"takeoff", "take-off to the east and a climb with a left turn", takeoff().durationS(),
+       [](double t) { return takeoff().poseAt(t); }},
+      {"low-level", "a jet over the mountains, turn after turn", lowLevel().durationS(),
+       [](double t) { return lowLevel().poseAt(t); }},
+      {"orbit", "one turn around the airfield, 6 km out", kOrbitS, orbitAt},
+      {"approach", "three degrees down to the runway, flare and roll-out", approach().durationS(),
+       [](double t) { return approach().poseAt(t); }},
+      {"descent-from-space", "from 20,000 km straight down to the mountains", kDescentS, descentAt},
+      {kDefaultScenario, "take-off, climb and a low-level turn: what demo:// flies", tour().durationS(),
+       [](double t) { return tour().poseAt(t); }},
+  };
+  return all;
+}
+
+Result<Scenario> findScenario(const std::string& name) {
+  std::string names;
+  for (const Scenario& scenario : scenarios()) {
+    if (scenario.name == name) return scenario;
+    names += (names.empty() ? "" : ", ") + scenario.name;
+  }
+  return fail(ErrorKind::usage, fmt::format("there is no scenario '{}'; there are: {}", name, names));
+}
+
+}  // namespace eye
