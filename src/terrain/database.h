@@ -32,7 +32,8 @@ struct StoredChunk {
   Blob imagery;  // empty where meta.hasImagery is false
 };
 
-// Thread: any one at a time. Every write is inside a transaction: kill -9 loses at most the open one.
+// Thread: any one at a time. Every write is inside a transaction: kill -9 loses at most the open one. A write that fails
+// (a full disk, say) rolls the whole transaction back, and what follows in it fails too, up to begin().
 class DatabaseWriter {
  public:
   // Fails where the file exists, unless it is opened for resuming, which checks that info's settings are the same.
@@ -48,9 +49,11 @@ class DatabaseWriter {
   // Call after the children are in: stores the parent's child count and raises its and its ancestors' errors so that no
   // child's exceeds its parent's.
   Result<void> setChildren(const TileKey& parent, int childCount);
+  // In the file and undamaged: false also where its bytes fail their checksum, so that --resume mends what is broken.
   Result<bool> contains(const TileKey& key) const;
   Result<std::optional<ChunkMeta>> readMeta(const TileKey& key) const;
-  Result<void> finish();  // marks the bake complete, optimises, checkpoints
+  // Marks the bake complete and checkpoints: with the writer gone, the file alone is the database.
+  Result<void> finish();
 
  private:
   struct Impl;

@@ -1,0 +1,12 @@
+// What must hold of a stored chunk beyond its checksum.
+#pragma once
+
+#include "base/error.h"
+#include "terrain/database.h"
+
+namespace eye {
+
+// Both blobs decode, and box, sphere and heights hold every vertex. The error is without file and tile.
+Result<void> checkContents(const StoredChunk& chunk, int textureSize);
+
+}  // namespace eye
