@@ -101,8 +101,13 @@ std::optional<std::span<const std::byte>> UdpSocket::receive(std::span<std::byte
   return buffer.first(static_cast<size_t>(bytes));
 }
 
-bool UdpSocket::send(std::span<const std::byte> payload) const {
-  return ::send(fd_, payload.data(), payload.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(payload.size());
+SendOutcome UdpSocket::send(std::span<const std::byte> payload) const {
+  const auto once = [&] { return ::send(fd_, payload.data(), payload.size(), MSG_NOSIGNAL); };
+  const auto whole = static_cast<ssize_t>(payload.size());
+  if (once() == whole) return SendOutcome::sent;
+  // The refusal of an earlier datagram is reported instead of sending this one: try it again.
+  if (errno == ECONNREFUSED && once() == whole) return SendOutcome::refused;
+  return SendOutcome::failed;
 }
 
 uint16_t UdpSocket::port() const {

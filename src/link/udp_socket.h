@@ -15,6 +15,12 @@ namespace eye {
 // The largest payload that a UDP datagram over IPv4 can have.
 inline constexpr size_t kMaxDatagramBytes = 65507;
 
+enum class SendOutcome {
+  sent,
+  refused,  // sent, but the other machine has answered to an earlier datagram that nobody listens (yet)
+  failed,
+};
+
 class UdpSocket {
  public:
   // Listens on the address; port 0 lets the system choose one (see `port`).
@@ -30,8 +36,7 @@ class UdpSocket {
   // The next datagram that has already arrived, or nothing. The span points into `buffer`, which should hold
   // kMaxDatagramBytes: what does not fit is lost.
   std::optional<std::span<const std::byte>> receive(std::span<std::byte> buffer) const;
-  // False when the datagram was not taken, for instance because nobody listens at the other end (yet).
-  bool send(std::span<const std::byte> payload) const;
+  SendOutcome send(std::span<const std::byte> payload) const;
   uint16_t port() const;  // the local one
 
  private:

@@ -1,0 +1,120 @@
+#include "link/sender.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <thread>
+
+#include "link/native_fdm.h"
+#include "telemetry/trace.h"
+
+namespace eye {
+namespace {
+
+constexpr double kNsPerS = 1e9;
+constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
+constexpr int64_t kSecondNs = 1'000'000'000;
+constexpr int64_t kStopCheckNs = 50'000'000;  // the longest sleep: how long an interrupt may take
+
+int64_t nsOf(double seconds) {
+  return static_cast<int64_t>(std::llround(seconds * kNsPerS));
+}
+
+struct Departure {
+  int64_t atNs = 0;
+  uint64_t order = 0;  // ties leave in the order in which they came
+  std::vector<std::byte> payload;
+  bool operator>(const Departure& other) const { return atNs != other.atNs ? atNs > other.atNs : order > other.order; }
+};
+using Departures = std::priority_queue<Departure, std::vector<Departure>, std::greater<>>;
+
+void sleepUntil(int64_t deadlineNs) {
+  const int64_t leftNs = deadlineNs - monotonicNs();
+  if (leftNs <= 0) return;
+  std::this_thread::sleep_until(std::chrono::steady_clock::now() +
+                                std::chrono::nanoseconds(std::min(leftNs, kStopCheckNs)));
+}
+
+void sendOne(const Departure& departure, const UdpSocket& socket, SendReport& report) {
+  const SendOutcome outcome = socket.send(departure.payload);
+  report.nobodyListens = outcome == SendOutcome::refused;
+  if (outcome == SendOutcome::failed) {
+    ++report.failed;
+    return;
+  }
+  ++report.datagrams;
+  if (const auto state = parseNativeFdm(departure.payload)) report.pose = state->pose;
+}
+
+}  // namespace
+
+PacketSource packetsFromPoses(std::function<Pose(double timeS)> poseAt, double durationS, double rateHz) {
+  // The small sum keeps a last packet that falls on the end from being lost to rounding.
+  const auto count = static_cast<uint64_t>(durationS * rateHz + 1e-6) + 1;
+  return {count, static_cast<double>(count) / rateHz, [poseAt = std::move(poseAt), rateHz](uint64_t index) {
+            const double timeS = static_cast<double>(index) / rateHz;
+            return RecordedPacket{timeS, buildNativeFdm({poseAt(timeS), std::nullopt})};
+          }};
+}
+
+PacketSource packetsFromRecording(std::vector<RecordedPacket> packets) {
+  EYE_CHECK(!packets.empty());
+  const uint64_t count = packets.size();
+  const double lastS = packets.back().timeS;
+  // The next round begins one mean step after the last packet; a second for a recording that has no step.
+  const double stepS = lastS > 0 ? lastS / static_cast<double>(count - 1) : 1.0;
+  return {count, lastS + stepS, [packets = std::move(packets)](uint64_t index) { return packets[index]; }};
+}
+
+SendReport sendPackets(const PacketSource& source, const UdpSocket& socket, const SendOptions& options,
+                       const std::atomic<bool>& stop, const std::function<void(const SendReport&)>& everySecond) {
+  BadLink link(options.badLink);
+  const int64_t periodNs = nsOf(source.roundS / static_cast<double>(source.count));
+  const int64_t endNs = options.durationS ? nsOf(*options.durationS) : kNever;
+  Departures departures;
+  SendReport report;
+  uint64_t round = 0, index = 0, order = 0;
+  int64_t nextSecondNs = kSecondNs;
+  const int64_t startNs = monotonicNs();
+
+  RecordedPacket next = source.packetAt(0);
+  int64_t nextNs = 0;  // when `next` is due; all times count from startNs
+  while (!stop) {
+    const int64_t departureNs = departures.empty() ? kNever : departures.top().atNs;
+    const int64_t eventNs = std::min({nextNs, departureNs, endNs});
+    if (eventNs == kNever) break;  // all sent
+    int64_t nowNs = monotonicNs() - startNs;
+    if (nowNs < eventNs) {
+      sleepUntil(startNs + std::min(eventNs, nextSecondNs));
+      nowNs = monotonicNs() - startNs;
+    }
+    report.elapsedS = static_cast<double>(nowNs) / kNsPerS;
+    if (nowNs >= nextSecondNs) {
+      everySecond(report);
+      nextSecondNs = (nowNs / kSecondNs + 1) * kSecondNs;
+    }
+    if (nowNs < eventNs) continue;
+    if (eventNs == endNs) break;
+
+    if (departureNs <= nextNs) {
+      sendOne(departures.top(), socket, report);
+      departures.pop();
+      continue;
+    }
+    ++report.packets;
+    const auto times = link.departures(nextNs, periodNs);
+    report.lost += times.empty() ? 1u : 0u;
+    report.duplicated += times.size() > 1 ? 1u : 0u;
+    for (const int64_t atNs : times) departures.push({atNs, order++, next.payload});
+    if (++index == source.count) index = 0, ++round;
+    const bool more = round == 0 || options.loop;
+    if (more) next = source.packetAt(index);
+    nextNs = more ? nsOf(static_cast<double>(round) * source.roundS + next.timeS) : kNever;
+  }
+  report.elapsedS = static_cast<double>(monotonicNs() - startNs) / kNsPerS;
+  return report;
+}
+
+}  // namespace eye

@@ -1,0 +1,164 @@
+// eyepoint-host: a host that flies an image generator with a recording, a scenario or a fixed pose.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "link/scenario.h"
+#include "link/sender.h"
+#include "link/state_source.h"
+
+namespace {
+
+using namespace eye;
+
+struct Arguments {
+  std::string protocol, to, track, scenario, pose, logLevel = "info";
+  double rateHz = 60;
+  SendOptions send;
+};
+
+std::atomic<bool> stopAsked = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
+
+void onSignal(int) {
+  stopAsked = true;
+}
+
+int complain(const Error& error) {
+  fmt::print(stderr, "eyepoint-host: {}\n", error.message);
+  return exitStatus(error);
+}
+
+std::string scenarioNames() {
+  std::string names;
+  for (const Scenario& scenario : scenarios()) names += (names.empty() ? "" : ", ") + scenario.name;
+  return names;
+}
+
+void declareOptions(CLI::App& app, Arguments& args) {
+  app.add_option("--protocol", args.protocol, "What to speak: native-fdm")->type_name("NAME")->required();
+  app.add_option("--to", args.to, "Where to send")->type_name("ADDR:PORT")->required();
+  auto* what = app.add_option_group("What to fly (one of)");
+  what->add_option("--track", args.track, "Recording: CSV, IGC, or a pcap, which is sent packet by packet as recorded")
+      ->type_name("FILE");
+  what->add_option("--scenario", args.scenario, "Built-in flight: " + scenarioNames())->type_name("NAME");
+  what->add_option("--pose", args.pose, "Stand still at lat,lon,alt,heading,pitch,roll")->type_name("P");
+  what->require_option(1);
+  app.add_option("--rate", args.rateHz, "Packets a second")->type_name("HZ")->capture_default_str();
+  app.add_option("--duration", args.send.durationS, "Stop after this many seconds")->type_name("S");
+  app.add_flag("--loop", args.send.loop, "Begin again at the end");
+  auto* bad = app.add_option_group("A bad link");
+  bad->add_option("--jitter", args.send.badLink.jitterMs, "Delay each packet by 0 to MS")->type_name("MS");
+  bad->add_option("--loss", args.send.badLink.loss, "Share of packets not sent, 0 to 1")->type_name("P");
+  bad->add_option("--duplicate", args.send.badLink.duplicate, "Share sent twice")->type_name("P");
+  bad->add_option("--reorder", args.send.badLink.reorder, "Share sent after its successor")->type_name("P");
+  bad->add_option("--seed", args.send.badLink.seed, "Of the bad link's chance")->capture_default_str();
+  app.add_option("--log-level", args.logLevel, "What is printed")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->capture_default_str();
+  app.set_version_flag("--version", std::string("eyepoint-host ") + EYE_VERSION);
+  app.footer(
+      "Examples:\n"
+      "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --scenario low-level --loop\n"
+      "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --track flight.pcap\n"
+      "  eyepoint-host --protocol native-fdm --to 10.0.0.2:5550 --track glider.igc --jitter 20 --loss 0.01");
+}
+
+Result<void> check(const Arguments& args) {
+  if (args.protocol != "native-fdm")
+    return fail(ErrorKind::usage, fmt::format("--protocol '{}' is not spoken; there is: native-fdm", args.protocol));
+  if (!(args.rateHz >= 0.1 && args.rateHz <= 10'000))
+    return fail(ErrorKind::usage, fmt::format("--rate {} is outside 0.1 to 10000 Hz", args.rateHz));
+  if (args.send.durationS && !(*args.send.durationS > 0 && *args.send.durationS <= 1e7))
+    return fail(ErrorKind::usage, fmt::format("--duration {} is outside 0 to 10000000 s", *args.send.durationS));
+  return checkBadLink(args.send.badLink);
+}
+
+Result<PacketSource> sourceOf(const Arguments& args) {
+  if (!args.scenario.empty()) {
+    const auto scenario = findScenario(args.scenario);
+    if (!scenario) return tl::unexpected(scenario.error());
+    return packetsFromPoses(scenario->poseAt, scenario->durationS, args.rateHz);
+  }
+  if (!args.pose.empty()) {
+    const auto pose = parsePose(args.pose);
+    if (!pose) return tl::unexpected(pose.error());
+    return packetsFromPoses([pose = *pose](double) { return pose; }, 0, args.rateHz);
+  }
+  const auto bytes = readTrackFile(args.track);
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (isCapture(*bytes)) {
+    auto packets = parsePcapPackets(*bytes);
+    if (!packets) return fail(packets.error().kind, fmt::format("track '{}': {}", args.track, packets.error().message));
+    return packetsFromRecording(std::move(*packets));
+  }
+  auto track = loadTrack(args.track);
+  if (!track) return tl::unexpected(track.error());
+  const double durationS = track->durationS();
+  return packetsFromPoses([track = std::move(*track)](double t) { return track.at(t); }, durationS, args.rateHz);
+}
+
+// One line a second, and what to do when nobody hears.
+class Ticker {
+ public:
+  explicit Ticker(std::string to) : to_(std::move(to)) {}
+  void operator()(const SendReport& report) {
+    const double rateHz = static_cast<double>(report.datagrams - datagrams_) / (report.elapsedS - elapsedS_);
+    datagrams_ = report.datagrams, elapsedS_ = report.elapsedS;
+    std::string position = "nothing sent yet";
+    if (const auto& pose = report.pose)
+      position =
+          fmt::format("{:.6f} {:.6f} {:.1f} m, heading {:.1f} pitch {:.1f} roll {:.1f}", pose->position.latDeg,
+                      pose->position.lonDeg, pose->position.altM, pose->headingDeg, pose->pitchDeg, pose->rollDeg);
+    spdlog::info("{:6.1f} s, {} packets, {:.1f} Hz, {}{}", report.elapsedS, report.datagrams, rateHz, position,
+                 report.nobodyListens ? fmt::format(" (nobody listens at {} yet)", to_) : "");
+  }
+
+ private:
+  std::string to_;
+  uint64_t datagrams_ = 0;
+  double elapsedS_ = 0;
+};
+
+int fly(Arguments args) {
+  if (const auto ok = check(args); !ok) return complain(ok.error());
+  const auto endpoint = parseEndpoint(args.to, kLoopbackAddress, "--to");
+  if (!endpoint) return complain(endpoint.error());
+  const auto source = sourceOf(args);
+  if (!source) return complain(source.error());
+  const auto socket = UdpSocket::connectTo(*endpoint);
+  if (!socket) return complain(socket.error());
+
+  if (!args.pose.empty()) args.send.loop = true;  // one pose is a round of one packet
+  spdlog::info("sending native-fdm to {}:{}", endpoint->address, endpoint->port);
+  const SendReport report = sendPackets(*source, *socket, args.send, stopAsked, Ticker(args.to));
+  spdlog::info("{} packets in {:.2f} s: {} datagrams sent, {} lost on purpose, {} duplicated, {} failed",
+               report.packets, report.elapsedS, report.datagrams, report.lost, report.duplicated, report.failed);
+  if (report.failed == 0) return 0;
+  return complain({ErrorKind::io, fmt::format("{} datagrams could not be sent to {}; check the network and the address",
+                                              report.failed, args.to)});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Flies an image generator over UDP: recordings, built-in scenarios or a fixed pose.", "eyepoint-host");
+  Arguments args;
+  declareOptions(app, args);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
+  } catch (const CLI::ParseError& problem) {
+    return complain({ErrorKind::usage, fmt::format("{} (see --help)", problem.what())});
+  }
+  spdlog::set_level(spdlog::level::from_str(args.logLevel));
+  spdlog::set_pattern("%v");
+  std::signal(SIGINT, onSignal);
+  std::signal(SIGTERM, onSignal);
+  return fly(std::move(args));
+}
