@@ -13,23 +13,24 @@ namespace eye {
 enum class CullingScheme { none, frustum };
 
 struct LodOptions {
-  double ssePx = 1;        // tolerated screen-space error of geometry
-  double texelPx = 4;      // greatest size of an imagery texel on screen while finer imagery exists
+  double ssePx = 1;                                // tolerated screen-space error of geometry
+  double texelPx = 4;                              // greatest size of an imagery texel on screen while finer exists
   CullingScheme culling = CullingScheme::frustum;  // frustum: view planes and horizon
 };
 
 struct DrawnChunk {
-  uint32_t node = 0;            // TerrainCache node
-  double distanceM = 0;         // eye to the chunk's box
-  uint8_t skirtMask = 0;        // bit (1 << Side): the neighbour there is not drawn at this level
-  double skirtDepthM = 0;       // own error and the largest neighbour's
-  uint32_t textureNode = 0;     // the chunk whose imagery it shows, and the affine map into its TileParam
+  uint32_t node = 0;         // TerrainCache node
+  double distanceM = 0;      // eye to the chunk's box
+  uint8_t skirtMask = 0;     // bit (1 << Side): the neighbour there is not drawn at this level
+  double skirtDepthM = 0;    // own error and the largest neighbour's
+  uint32_t textureNode = 0;  // the chunk whose imagery it shows, and the affine map into its TileParam
   glm::vec2 textureScale{1.0f}, textureOffset{0.0f};
 };
 
 struct WantedChunk {
   TileKey key;
-  float priority = 0;  // greater is more urgent: screen-space error in units of the tolerance, nearer first among equals
+  float priority =
+      0;  // greater is more urgent: screen-space error in units of the tolerance, nearer first among equals
 };
 
 struct SelectionCounts {
@@ -39,12 +40,22 @@ struct SelectionCounts {
 
 struct Selection {
   std::vector<DrawnChunk> draws;    // front to back
-  std::vector<WantedChunk> wanted;  // most urgent first
+  std::vector<WantedChunk> wanted;  // most urgent first; the children of one parent behind one another
   SelectionCounts counts;
+
+  // The walk's own, kept from frame to frame so that it does not allocate.
+  struct Coarse {  // drawn with an error above the tolerance
+    uint32_t node;
+    float priority, distanceM;
+    bool childrenMissing;
+  };
+  std::vector<DrawnChunk> walked;
+  std::vector<Coarse> coarse;
+  std::vector<uint64_t> order;
 };
 
 // A node is refined when its error is too large on screen and all of its children are resident (Ulrich 2002).
-// Nodes that are visited are marked used in the cache, for eviction.
+// Call after cache.beginFrame(). Nodes that are visited are marked used in the cache, for eviction.
 void selectChunks(TerrainCache& cache, const View& view, const LodOptions& options, Selection& out);
 
 // Whether the ellipsoid hides the point (scaled space: ecef over the semi-axes). Cesium's test: exact for ellipsoids.

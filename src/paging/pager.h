@@ -1,4 +1,5 @@
-// The pager: a thread that owns disk and decode, and the one call a frame in which render thread and paging thread meet.
+// The pager: a thread that owns disk and decode, and the one call a frame in which render thread and paging thread
+// meet.
 #pragma once
 
 #include <memory>
@@ -24,14 +25,15 @@ struct PagingCounts {  // since the start, but for the first two and last two
 class Pager {
  public:
   // Reads and uploads the eight roots before it returns: they are always resident.
-  static Result<std::unique_ptr<Pager>> create(const std::string& databasePath, GpuStore& gpu, const PagerOptions& options);
+  static Result<std::unique_ptr<Pager>> create(const std::string& databasePath, GpuStore& gpu,
+                                               const PagerOptions& options);
   ~Pager();
 
   TerrainCache& cache();
   const DatabaseInfo& info() const;
-  // Hands over what is wanted (all of it: what is not in the list any more is cancelled), takes in what is loaded within
-  // the upload budget, evicts least recently used leaves where a budget is short. Returns chunks taken in.
-  // With options.wait: waits for at least one wanted chunk, 0 when none can come.
+  // Hands over what is wanted (all of it: what is not in the list any more is cancelled), takes in what is loaded
+  // within the upload budget, evicts least recently used leaves where a budget is short. Returns chunks taken in. With
+  // options.wait: waits for at least one wanted chunk, 0 when none can come.
   int exchange(const Selection& selection);
   PagingCounts counts() const;
 

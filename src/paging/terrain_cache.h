@@ -1,5 +1,5 @@
-// What is resident, as the render thread sees it: a forest of chunks under the eight roots, each with its place on the GPU.
-// Owner thread: render.
+// What is resident, as the render thread sees it: a forest of chunks under the eight roots, each with its place on the
+// GPU. Owner thread: render.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "terrain/chunk.h"
@@ -18,10 +19,10 @@ namespace eye {
 // A chunk ready for the GPU: decoded, skirts appended, mip chain made. Made by the paging thread.
 struct LoadedChunk {
   ChunkMeta meta;
-  ChunkMesh mesh;                         // surface first, skirts behind
+  ChunkMesh mesh;  // surface first, skirts behind
   uint32_t surfaceIndexCount = 0;
-  std::array<SkirtRange, 4> skirts{};     // by Side
-  std::vector<uint8_t> texels;            // RGBA8 mip chain; empty where the chunk shows an ancestor's imagery
+  std::array<SkirtRange, 4> skirts{};  // by Side
+  std::vector<uint8_t> texels;         // RGBA8 mip chain; empty where the chunk shows an ancestor's imagery
   size_t bytes() const;
 };
 
@@ -30,7 +31,7 @@ struct LoadedChunk {
 struct GpuChunk {
   uint32_t vertexOffset = 0, firstIndex = 0;  // into the renderer's pools
   uint32_t vertexCount = 0, indexCount = 0;
-  int32_t textureLayer = -1;                  // -1: none of its own
+  int32_t textureLayer = -1;  // -1: none of its own
 };
 class GpuStore {
  public:
@@ -41,28 +42,75 @@ class GpuStore {
   virtual uint64_t bytesResident() const = 0;
 };
 
+// What the last walk that reached a node did with it; none: it has only just been inserted.
+enum class Visit : uint8_t { none, drawn, refined, outsideFrustum, belowHorizon };
+
 // A node of the forest. Children are resident all together or not at all.
 struct CacheNode {
+  static constexpr uint32_t kNoNode = ~uint32_t{0};
+
   ChunkMeta meta;
   GpuChunk gpu;
   std::array<SkirtRange, 4> skirts{};
   uint32_t surfaceIndexCount = 0;
   uint32_t parent = kNoNode;
-  uint32_t firstChild = kNoNode;  // children lie behind one another
-  uint32_t textureNode = kNoNode; // itself or the nearest ancestor with imagery
-  uint64_t usedFrame = 0;         // last frame that visited it
-  static constexpr uint32_t kNoNode = ~uint32_t{0};
+  uint32_t firstChild = kNoNode;   // children lie behind one another, in the order of TileKey::children
+  uint32_t textureNode = kNoNode;  // itself or the nearest ancestor with imagery
+  glm::vec2 textureScale{1.0f}, textureOffset{0.0f};  // from its own TileParam to textureNode's
+  // By Side: the resident nodes of its own level across it, kNoNode where one is not resident; how many the grid has.
+  std::array<std::array<uint32_t, 2>, 4> neighbours{};
+  std::array<uint8_t, 4> neighbourCount{};
+  Visit visit = Visit::none;  // of usedFrame
+  uint64_t usedFrame = 0;     // last frame that visited it, at first that of its insertion
+};
+
+// A chunk that is on the GPU and about to join the forest.
+struct ResidentChunk {
+  ChunkMeta meta;
+  GpuChunk gpu;
+  std::array<SkirtRange, 4> skirts{};
+  uint32_t surfaceIndexCount = 0;
 };
 
 class TerrainCache {
  public:
-  const CacheNode& node(uint32_t index) const;
-  CacheNode& node(uint32_t index);
-  std::span<const uint32_t> roots() const;
+  const CacheNode& node(uint32_t index) const { return nodes_[index]; }
+  CacheNode& node(uint32_t index) { return nodes_[index]; }
+  std::span<const uint32_t> roots() const { return roots_; }
   std::optional<uint32_t> find(const TileKey& key) const;
-  uint64_t frame() const;  // counts calls of beginFrame
-  void beginFrame();
-  // ... insertion and eviction are the pager's.
+  uint64_t frame() const { return frame_; }  // counts calls of beginFrame
+  void beginFrame() { ++frame_; }            // selectChunks calls it
+  size_t size() const { return indexOf_.size(); }
+  // The lowest minHeightM that was ever resident: a bound for what the ellipsoid may be trusted to hide.
+  double lowestHeightM() const { return lowestHeightM_; }
+
+  // Insertion and eviction are the pager's. Indices of other nodes stay valid, references do not.
+  // The eight roots in the order of their octants, once, all with imagery.
+  void insertRoots(std::span<const ResidentChunk> roots);
+  // All children of a node that has none resident, in the order of TileKey::children.
+  void insertChildren(uint32_t parent, std::span<const ResidentChunk> children);
+  void removeChildren(uint32_t parent);  // which have no children themselves
+  // Parents of groups whose members are all childless and that no frame from `usedBefore` on has visited: least
+  // recently used first, then by code.
+  void leafGroupsUnusedSince(uint64_t usedBefore, std::vector<uint32_t>& parents) const;
+  // Resident children of a node: empty or three or four, behind one another.
+  std::span<const CacheNode> children(uint32_t parent) const;
+
+ private:
+  uint32_t takeSlots();  // of four nodes
+  void place(uint32_t index, uint32_t parent, const ResidentChunk& chunk);
+  void link(uint32_t index);
+  void unlink(uint32_t index);
+
+  static constexpr uint32_t kSlots = 4;  // nodes are given out in fours: a group's slots lie behind one another
+
+  std::vector<CacheNode> nodes_;
+  std::vector<uint32_t> groupParents_;  // of slots 4 i to 4 i + 3; kNoNode: roots or free
+  std::vector<uint32_t> freeGroups_;
+  std::vector<uint32_t> roots_;
+  std::unordered_map<TileKey, uint32_t> indexOf_;
+  uint64_t frame_ = 0;
+  double lowestHeightM_ = 0;
 };
 
 }  // namespace eye

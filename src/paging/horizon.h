@@ -1,0 +1,38 @@
+// What the Earth hides: chunks whose every point lies behind the ellipsoid, as seen from the eye.
+//
+// What hides them is the terrain, not the ellipsoid. So the test takes an ellipsoid shrunk to lie under all terrain
+// that is drawn between the eye and the horizon: a ray that meets it has met terrain before. A chunk's horizon point
+// was made for the ellipsoid in full size and for the chunk's own mesh; it is raised for the smaller ellipsoid and for
+// finer descendants, which may be higher than the mesh. Both raises are exact bounds on a sphere, and scaled space is
+// one.
+#pragma once
+
+#include "geo/frames.h"
+#include "geo/view.h"
+#include "terrain/chunk.h"
+
+namespace eye {
+
+class Horizon {
+ public:
+  // `depthM`: all that is drawn as far as reachM() lies above the ellipsoid lowered by this.
+  Horizon(const Vec3d& eyeEcefM, double depthM);
+
+  // No point of a ray beyond this distance from the eye is the first that meets the shrunk ellipsoid, metres.
+  double reachM() const { return reachM_; }
+  double depthM() const { return depthM_; }
+  // Whether nothing of the chunk can be seen, nor of what descends from it: meshes up to twice its error higher.
+  bool hides(const ChunkMeta& meta) const;
+
+ private:
+  double depthM_, reachM_ = 0;
+  double shrink_ = 1;  // semi-axes of the shrunk ellipsoid over the full ones
+  bool eyeOutside_ = false;
+  Vec3d eyeScaled_{};  // ecef over the shrunk semi-axes
+};
+
+// A first depth that terrain within the tolerance never exceeds: its sag grows with its distance, and what hides lies
+// no farther than the horizon. `tolerancePerM`: tolerated error over distance.
+Horizon horizonForTolerance(const Vec3d& eyeEcefM, double lowestHeightM, double greatestErrorM, double tolerancePerM);
+
+}  // namespace eye
