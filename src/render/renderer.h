@@ -12,39 +12,40 @@
 
 #include "base/error.h"
 #include "geo/view.h"
+#include "gpu/device_description.h"
 #include "paging/terrain_cache.h"
 
 namespace eye {
 
 struct RendererOptions {
   int widthPx = 800, heightPx = 600;
-  std::string device;          // part of a device's name; empty: discrete before integrated before CPU
-  bool validate = false;       // validation and synchronization validation; any message is counted
-  bool window = false;         // else off-screen
+  std::string device;     // part of a device's name; empty: discrete before integrated before CPU
+  bool validate = false;  // validation and synchronization validation; any message is counted
+  bool window = false;    // else off-screen
   bool fullscreen = false;
   int monitor = 0;
   bool vsync = true;
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
-  int textureSize = 128;       // of the terrain database
+  int textureSize = 128;                          // of the terrain database
 };
 
 struct ChunkDraw {
-  GpuChunk gpu;                       // firstIndex and indexCount: the surface's
-  std::array<SkirtRange, 4> skirts{}; // by Side, offsets from gpu.firstIndex
+  GpuChunk gpu;                        // firstIndex and indexCount: the surface's
+  std::array<SkirtRange, 4> skirts{};  // by Side, offsets from gpu.firstIndex
   uint8_t skirtMask = 0;
   float skirtDepthM = 0;
   LatticePoint originLattice{};
   double stepM = 1;
-  glm::vec3 upEcef{};                          // at the chunk's centre
-  std::array<glm::vec3, 4> outwardEcef{};      // by Side: horizontal, away from the chunk, for the skirts' flare
+  glm::vec3 upEcef{};                      // at the chunk's centre
+  std::array<glm::vec3, 4> outwardEcef{};  // by Side: horizontal, away from the chunk, for the skirts' flare
   uint32_t textureLayer = 0;
   glm::vec2 textureScale{1.0f}, textureOffset{0.0f};
-  float texelM = 1;                            // size of a texel of that layer
+  float texelM = 1;  // size of a texel of that layer
 };
 
 struct Lighting {
   Vec3d sunDirectionEcef{0, 0, 1};  // unit, towards the sun
-  double visibilityM = 50000;       // meteorological: contrast falls to 5 % (Koschmieder: extinction = 2.996 / visibility)
+  double visibilityM = 50000;  // meteorological: contrast falls to 5 % (Koschmieder: extinction = 2.996 / visibility)
 };
 
 struct FrameInput {
@@ -53,7 +54,7 @@ struct FrameInput {
   Lighting lighting;
   std::optional<glm::vec3> background;  // instead of the sky, without haze: for tests that look for holes
   bool readColour = false, readDepth = false;
-  std::function<void()> overlay;        // Dear ImGui calls; empty: none
+  std::function<void()> overlay;  // Dear ImGui calls; empty: none
 };
 
 struct PassTime {
@@ -66,15 +67,9 @@ struct FrameOutput {
   double gpuMs = 0;
   std::vector<PassTime> passes;
   uint64_t triangles = 0, vertices = 0, draws = 0;  // submitted
-  std::span<const uint8_t> rgba;   // width * height * 4, row 0 on top; empty unless asked for
-  std::span<const float> depth;    // reversed-Z: near / z, 0 where nothing is
-  int widthPx = 0, heightPx = 0;   // of this frame: a window may have been resized
-};
-
-struct DeviceDescription {
-  std::string name, type, driver, apiVersion;
-  bool usable = false;
-  std::string lacks;  // what makes it unusable, in words
+  std::span<const uint8_t> rgba;                    // width * height * 4, row 0 on top; empty unless asked for
+  std::span<const float> depth;                     // reversed-Z: near / z, 0 where nothing is
+  int widthPx = 0, heightPx = 0;                    // of this frame: a window may have been resized
 };
 
 class Renderer final : public GpuStore {

@@ -1,0 +1,34 @@
+// What C++ and GLSL must agree on, stated once. Both compile this file.
+#ifndef EYE_SHADERS_CONFIG_H
+#define EYE_SHADERS_CONFIG_H
+
+// Depth is near / z with an infinite far plane, in D32_SFLOAT: cleared to 0 (nothing there), compared with GREATER.
+#define EYE_REVERSED_Z 1
+#define EYE_CLEAR_DEPTH 0.0
+
+// Bindings of the one descriptor set.
+#define EYE_BIND_FRAME 0
+#define EYE_BIND_DRAWS 1
+#define EYE_BIND_TEXEL_SIZES 2
+#define EYE_BIND_TEXTURES 3
+#define EYE_BIND_DEPTH 4
+#define EYE_BIND_ATTRIBUTES 5
+
+// Bits of the slim attribute target's second word: texture layer, sunlight, skylight.
+#define EYE_LAYER_BITS 11
+#define EYE_SUN_BITS 11
+#define EYE_SKY_BITS 10
+#define EYE_MAX_LAYERS 2048
+
+// How far a skirt's lower rim moves outwards, as a share of its depth: enough to cover what two edges differ horizontally.
+#define EYE_SKIRT_FLARE 0.5
+
+// Heights over which the air thins out by e: air itself, which also carries the haze.
+#define EYE_AIR_SCALE_M 8000.0
+// A ray counts as in the air below this height: 7.5 scale heights, 0.06 % of the air lies above.
+#define EYE_AIR_TOP_M 60000.0
+// Column of air along a level ray over that of a vertical one, from the ground: sqrt(pi R / 2 H).
+#define EYE_LEVEL_COLUMN 35.4
+#define EYE_EARTH_RADIUS_M 6371000.0
+
+#endif

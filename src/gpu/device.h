@@ -1,0 +1,59 @@
+// The Vulkan instance, the device and its one queue. Owner thread: the one that created it.
+// Everything in this folder throws vk::SystemError where Vulkan fails; the module `render` turns that into an Error.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "base/error.h"
+#include "gpu/device_description.h"
+
+namespace eye {
+
+struct DeviceOptions {
+  std::string name;       // part of a device's name, letter case ignored; empty: discrete before integrated before CPU
+  bool validate = false;  // validation and synchronization validation; messages are logged and counted
+  bool window = false;    // GLFW is initialised and the device must be able to present to its windows
+};
+
+struct GpuDevice {
+  vk::raii::Context context;
+  vk::raii::Instance instance{nullptr};
+  vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
+  vk::raii::PhysicalDevice physical{nullptr};
+  vk::raii::Device device{nullptr};
+  vk::raii::Queue queue{nullptr};
+  vk::raii::CommandPool commandPool{nullptr};
+  uint32_t queueFamily = 0;
+  vk::PhysicalDeviceProperties properties;
+  vk::PhysicalDeviceMemoryProperties memory;
+  DeviceDescription description;
+  uint32_t timestampBits = 0;         // 0: the queue has no timestamps
+  std::atomic<uint64_t> messages{0};  // of the validation layer
+};
+
+// notFound or unsupported with what to install, choose or set. Never throws.
+Result<std::unique_ptr<GpuDevice>> createDevice(const DeviceOptions& options);
+Result<std::vector<DeviceDescription>> listDevices();
+
+// Records commands with `record(const vk::raii::CommandBuffer&)`, submits them and waits. For start-up and rare
+// flushes.
+template <class Record>
+void runOnce(const GpuDevice& gpu, Record&& record) {
+  vk::raii::CommandBuffers buffers(gpu.device, {*gpu.commandPool, vk::CommandBufferLevel::ePrimary, 1});
+  const vk::raii::CommandBuffer& commands = buffers.front();
+  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  record(commands);
+  commands.end();
+  const vk::CommandBufferSubmitInfo info(*commands);
+  vk::SubmitInfo2 submit;
+  submit.setCommandBufferInfos(info);
+  const vk::raii::Fence fence(gpu.device, vk::FenceCreateInfo{});
+  gpu.queue.submit2(submit, *fence);
+  (void)gpu.device.waitForFences(*fence, true, UINT64_MAX);
+}
+
+}  // namespace eye

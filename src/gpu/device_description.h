@@ -1,0 +1,14 @@
+// What `--list-devices` prints of a Vulkan device.
+#pragma once
+
+#include <string>
+
+namespace eye {
+
+struct DeviceDescription {
+  std::string name, type, driver, apiVersion;
+  bool usable = false;
+  std::string lacks;  // what makes it unusable, in words
+};
+
+}  // namespace eye

@@ -1,0 +1,50 @@
+// Buffers and images, each with an allocation of its own: the renderer has a dozen large ones, made at start, so a
+// general allocator would have nothing to do. Throw vk::SystemError where the device has no memory left.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "gpu/device.h"
+
+namespace eye {
+
+enum class MemoryUse {
+  device,    // only the GPU touches it
+  upload,    // the CPU writes, the GPU reads
+  readBack,  // the GPU writes, the CPU reads: cached where there is such memory
+};
+
+struct GpuBuffer {
+  vk::raii::DeviceMemory memory{nullptr};
+  vk::raii::Buffer buffer{nullptr};  // behind its memory: destroyed first
+  vk::DeviceSize size = 0;
+  std::byte* mapped = nullptr;  // whole buffer, coherent, for upload and readBack
+  template <class T>
+  std::span<T> as() const {
+    return {reinterpret_cast<T*>(mapped), size / sizeof(T)};
+  }
+};
+
+GpuBuffer createBuffer(const GpuDevice& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage, MemoryUse use);
+
+struct ImageSpec {
+  int widthPx = 0, heightPx = 0;
+  vk::Format format = vk::Format::eUndefined;
+  vk::ImageUsageFlags usage;
+  vk::ImageAspectFlags aspect = vk::ImageAspectFlagBits::eColor;
+  uint32_t mipLevels = 1, layers = 1;
+  bool array = false;  // the view is an array, even of one layer
+};
+
+struct GpuImage {
+  vk::raii::DeviceMemory memory{nullptr};
+  vk::raii::Image image{nullptr};
+  vk::raii::ImageView view{nullptr};  // of everything
+  ImageSpec spec;
+  vk::DeviceSize bytes = 0;  // of its memory
+};
+
+GpuImage createImage(const GpuDevice& gpu, const ImageSpec& spec);
+
+}  // namespace eye

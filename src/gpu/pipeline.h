@@ -1,0 +1,24 @@
+// Graphics pipelines for dynamic rendering: one description, one call. Viewport and scissor are dynamic.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gpu/device.h"
+
+namespace eye {
+
+struct PipelineSpec {
+  std::span<const uint32_t> vertexSpirv, fragmentSpirv;
+  vk::PipelineLayout layout;
+  std::vector<vk::VertexInputBindingDescription> bindings;
+  std::vector<vk::VertexInputAttributeDescription> attributes;
+  vk::Format colourFormat = vk::Format::eUndefined;
+  vk::Format depthFormat = vk::Format::eUndefined;       // undefined: neither tested nor written
+  vk::CullModeFlags cull = vk::CullModeFlagBits::eNone;  // counterclockwise as seen on the screen is the front
+  std::span<const int32_t> constants;                    // specialization constants 0, 1, ... of the fragment shader
+};
+
+vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const PipelineSpec& spec);
+
+}  // namespace eye

@@ -1,0 +1,202 @@
+#include "render/chunk_pools.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "shared/config.h"
+#include "terrain/chunk_codec.h"
+
+namespace eye {
+namespace {
+
+// Share of the budget for imagery. A chunk of 400 triangles takes 9 KiB of mesh, a texture of 128 texels 85 KiB, and
+// roughly one chunk in two has its own.
+constexpr double kTextureShare = 0.7;
+// A mesh has about twice as many triangles as vertices: 12 bytes of indices for each vertex of 16.
+constexpr uint64_t kVertexParts = 4, kIndexParts = 3;
+// Less than this cannot hold the eight roots and one level below.
+constexpr uint32_t kLeastLayers = 40, kLeastVertices = 40 * 1024;
+// Uploads of some frames at the pager's usual 4 MiB.
+constexpr uint64_t kStagingBytes = uint64_t{16} << 20;
+
+uint64_t roundUp(uint64_t value, uint64_t multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
+
+GpuImage createTextures(const GpuDevice& gpu, int textureSize, uint32_t layers) {
+  ImageSpec spec;
+  spec.widthPx = spec.heightPx = textureSize;
+  // Not sRGB: decoding would cost 11 to 15 % of sampling on a CPU device, and light is mixed as displayed.
+  spec.format = vk::Format::eR8G8B8A8Unorm;
+  spec.usage = vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst;
+  spec.mipLevels = static_cast<uint32_t>(mipLevels(textureSize));
+  spec.layers = layers;
+  spec.array = true;
+  return createImage(gpu, spec);
+}
+
+}  // namespace
+
+std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uint32_t maxLayers) {
+  PoolPlan plan;
+  const auto textureBytes = static_cast<uint64_t>(static_cast<double>(budgetBytes) * kTextureShare);
+  plan.layers = static_cast<uint32_t>(std::min<uint64_t>(textureBytes / layerBytes, maxLayers));
+  const uint64_t meshBytes = budgetBytes - std::min(budgetBytes, plan.layers * layerBytes);
+  const uint64_t parts = kVertexParts + kIndexParts;
+  // 2^31 indices of 2 bytes and 2^31 vertices are beyond any budget; the bound keeps 32-bit offsets safe.
+  constexpr uint64_t kMost = uint64_t{1} << 31;
+  plan.vertices = static_cast<uint32_t>(std::min(kMost, meshBytes * kVertexParts / parts / sizeof(ChunkVertex)));
+  plan.indices = static_cast<uint32_t>(std::min(kMost, meshBytes * kIndexParts / parts / sizeof(uint16_t)));
+  if (plan.layers < kLeastLayers || plan.vertices < kLeastVertices) return std::nullopt;
+  return plan;
+}
+
+Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize) {
+  const uint32_t maxLayers = std::min<uint32_t>(EYE_MAX_LAYERS, gpu.properties.limits.maxImageArrayLayers);
+  uint64_t layerBytes = mipChainBytes(textureSize);
+  // What a layer takes on the device is known when the image is made: the second round keeps to it.
+  for (int round = 0; round < 2; ++round) {
+    const auto plan = planPools(budgetBytes, layerBytes, maxLayers);
+    if (!plan) break;
+    GpuImage textures = createTextures(gpu, textureSize, plan->layers);
+    const uint64_t meshBytes = plan->vertices * sizeof(ChunkVertex) + plan->indices * sizeof(uint16_t);
+    if (textures.bytes + meshBytes <= budgetBytes) {
+      return std::unique_ptr<ChunkPools>(new ChunkPools(gpu, *plan, std::move(textures), textureSize));
+    }
+    layerBytes = textures.bytes / plan->layers + 1;
+  }
+  const double leastMib = double(kLeastLayers * layerBytes) / kTextureShare / (1 << 20);
+  return fail(
+      ErrorKind::usage,
+      fmt::format("a GPU budget of {} MiB is too small for textures of {} texels: give --cache-gpu at least {:.0f}",
+                  budgetBytes >> 20, textureSize, leastMib + 1));
+}
+
+ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize)
+    : gpu_(gpu),
+      textureSize_(textureSize),
+      chainBytes_(mipChainBytes(textureSize)),
+      vertices_(plan.vertices),
+      indices_(plan.indices),
+      layers_(plan.layers),
+      textures_(std::move(textures)) {
+  using Use = vk::BufferUsageFlagBits;
+  vertexBuffer_ =
+      createBuffer(gpu, plan.vertices * sizeof(ChunkVertex), Use::eVertexBuffer | Use::eTransferDst, MemoryUse::device);
+  indexBuffer_ =
+      createBuffer(gpu, plan.indices * sizeof(uint16_t), Use::eIndexBuffer | Use::eTransferDst, MemoryUse::device);
+  const uint64_t stagingBytes = std::max(kStagingBytes, 2 * chainBytes_ + (uint64_t{4} << 20));
+  staging_ = createBuffer(gpu, stagingBytes, Use::eTransferSrc, MemoryUse::upload);
+  runOnce(gpu, [this](const vk::raii::CommandBuffer& commands) {
+    const Usage before = usageDiscarded(vk::PipelineStageFlagBits2::eNone);
+    const std::array barriers{imageBarrier(textures_, before, usageSampled())};
+    recordBarriers(commands, barriers);
+  });
+}
+
+std::optional<GpuChunk> ChunkPools::upload(const LoadedChunk& chunk) {
+  const auto vertexCount = static_cast<uint32_t>(chunk.mesh.vertices.size());
+  const auto indexCount = static_cast<uint32_t>(chunk.mesh.indices.size());
+  EYE_CHECK(vertexCount > 0 && indexCount > 0 && (chunk.texels.empty() || chunk.texels.size() == chainBytes_));
+  const size_t vertexBytes = vertexCount * sizeof(ChunkVertex), indexBytes = indexCount * sizeof(uint16_t);
+  const uint64_t bytes = roundUp(vertexBytes, 16) + roundUp(indexBytes, 16) + roundUp(chunk.texels.size(), 16);
+  if (bytes > staging_.size) return std::nullopt;
+  if (stagedBytes_ + bytes > staging_.size) flush();
+
+  GpuChunk made;
+  made.vertexCount = vertexCount;
+  made.indexCount = indexCount;
+  const auto vertexOffset = vertices_.allocate(vertexCount);
+  const auto firstIndex = indices_.allocate(indexCount);
+  std::optional<uint32_t> layer;
+  if (!chunk.texels.empty()) layer = layers_.allocate(1);
+  if (!vertexOffset || !firstIndex || (!chunk.texels.empty() && !layer)) {
+    if (vertexOffset) vertices_.release(*vertexOffset, vertexCount);
+    if (firstIndex) indices_.release(*firstIndex, indexCount);
+    if (layer) layers_.release(*layer, 1);
+    return std::nullopt;
+  }
+  made.vertexOffset = *vertexOffset;
+  made.firstIndex = *firstIndex;
+  vertexCopies_.push_back(
+      {stage(chunk.mesh.vertices.data(), vertexBytes), *vertexOffset * sizeof(ChunkVertex), vertexBytes});
+  indexCopies_.push_back({stage(chunk.mesh.indices.data(), indexBytes), *firstIndex * sizeof(uint16_t), indexBytes});
+  if (!layer.has_value()) return made;
+
+  made.textureLayer = static_cast<int32_t>(*layer);
+  uint64_t offset = stage(chunk.texels.data(), chunk.texels.size());
+  for (uint32_t mip = 0; mip < textures_.spec.mipLevels; ++mip) {
+    const uint32_t side = std::max(1u, static_cast<uint32_t>(textureSize_) >> mip);
+    textureCopies_.push_back({offset, 0, 0, {vk::ImageAspectFlagBits::eColor, mip, *layer, 1}, {}, {side, side, 1}});
+    offset += uint64_t{4} * side * side;
+  }
+  return made;
+}
+
+void ChunkPools::release(const GpuChunk& chunk) {
+  // Its place may be given away at once, and two copies to one place in the same commands have no order.
+  if (isPending(chunk)) flush();
+  vertices_.release(chunk.vertexOffset, chunk.vertexCount);
+  indices_.release(chunk.firstIndex, chunk.indexCount);
+  if (chunk.textureLayer >= 0) layers_.release(static_cast<uint32_t>(chunk.textureLayer), 1);
+}
+
+uint64_t ChunkPools::bytesResident() const {
+  const uint64_t layerBytes = textures_.bytes / layers_.capacity();
+  return vertices_.used() * sizeof(ChunkVertex) + indices_.used() * sizeof(uint16_t) + layers_.used() * layerBytes;
+}
+
+bool ChunkPools::isPending(const GpuChunk& chunk) const {
+  const uint64_t place = chunk.vertexOffset * sizeof(ChunkVertex);
+  return std::any_of(vertexCopies_.begin(), vertexCopies_.end(),
+                     [place](const vk::BufferCopy& copy) { return copy.dstOffset == place; });
+}
+
+uint64_t ChunkPools::stage(const void* data, size_t bytes) {
+  const uint64_t offset = stagedBytes_;
+  std::memcpy(staging_.mapped + offset, data, bytes);
+  stagedBytes_ = roundUp(offset + bytes, 16);  // texture copies start at whole texels
+  return offset;
+}
+
+void ChunkPools::flush() {
+  runOnce(gpu_, [this](const vk::raii::CommandBuffer& commands) { recordUploads(commands); });
+  staged();
+}
+
+void ChunkPools::recordUploads(const vk::raii::CommandBuffer& commands) {
+  if (vertexCopies_.empty()) return;
+  commands.copyBuffer(*staging_.buffer, *vertexBuffer_.buffer, vertexCopies_);
+  commands.copyBuffer(*staging_.buffer, *indexBuffer_.buffer, indexCopies_);
+  recordMemoryBarrier(commands, vk::PipelineStageFlagBits2::eTransfer, vk::AccessFlagBits2::eTransferWrite,
+                      vk::PipelineStageFlagBits2::eVertexInput,
+                      vk::AccessFlagBits2::eVertexAttributeRead | vk::AccessFlagBits2::eIndexRead);
+  if (!textureCopies_.empty()) {
+    std::vector<vk::ImageMemoryBarrier2> before, after;
+    for (const vk::BufferImageCopy& copy : textureCopies_) {
+      if (copy.imageSubresource.mipLevel != 0) continue;
+      const vk::ImageSubresourceRange layer(vk::ImageAspectFlagBits::eColor, 0, VK_REMAINING_MIP_LEVELS,
+                                            copy.imageSubresource.baseArrayLayer, 1);
+      // The texture that lay there is not wanted any more.
+      before.push_back(
+          imageBarrier(textures_, usageDiscarded(vk::PipelineStageFlagBits2::eFragmentShader), usageCopyTarget()));
+      before.back().setSubresourceRange(layer);
+      after.push_back(imageBarrier(textures_, usageCopyTarget(), usageSampled()));
+      after.back().setSubresourceRange(layer);
+    }
+    recordBarriers(commands, before);
+    commands.copyBufferToImage(*staging_.buffer, *textures_.image, vk::ImageLayout::eTransferDstOptimal,
+                               textureCopies_);
+    recordBarriers(commands, after);
+  }
+  vertexCopies_.clear();
+  indexCopies_.clear();
+  textureCopies_.clear();
+}
+
+void ChunkPools::staged() {
+  stagedBytes_ = 0;
+}
+
+}  // namespace eye

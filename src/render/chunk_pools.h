@@ -1,0 +1,58 @@
+// Where chunks live on the GPU: one buffer of vertices, one of indices, one array of textures, all made at start with
+// the budget split between them, so that the budget cannot be exceeded and no frame allocates. Owner thread: render.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "gpu/barrier.h"
+#include "paging/terrain_cache.h"
+#include "render/range_allocator.h"
+
+namespace eye {
+
+struct PoolPlan {
+  uint32_t layers = 0, vertices = 0, indices = 0;
+  bool operator==(const PoolPlan&) const = default;
+};
+
+// Splits a budget. `layerBytes`: a texture with its mip chain. Nothing where the budget holds less than a view needs.
+std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uint32_t maxLayers);
+
+class ChunkPools {
+ public:
+  // usage: the budget is too small (says how much it needs). Throws vk::SystemError.
+  static Result<std::unique_ptr<ChunkPools>> create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize);
+
+  // Copies into staging memory; on the GPU with the next recordUploads.
+  std::optional<GpuChunk> upload(const LoadedChunk& chunk);
+  void release(const GpuChunk& chunk);
+  uint64_t bytesResident() const;
+
+  // Call once a frame, outside a render pass; afterwards the staging memory is in use until staged() is called.
+  void recordUploads(const vk::raii::CommandBuffer& commands);
+  // The commands of the last recordUploads are finished.
+  void staged();
+
+  vk::Buffer vertexBuffer() const { return *vertexBuffer_.buffer; }
+  vk::Buffer indexBuffer() const { return *indexBuffer_.buffer; }
+  const GpuImage& textures() const { return textures_; }
+
+ private:
+  ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize);
+  void flush();
+  bool isPending(const GpuChunk& chunk) const;
+  uint64_t stage(const void* data, size_t bytes);
+
+  const GpuDevice& gpu_;
+  int textureSize_;
+  uint64_t chainBytes_;  // of one texture as it is uploaded
+  RangeAllocator vertices_, indices_, layers_;
+  GpuBuffer vertexBuffer_, indexBuffer_, staging_;
+  GpuImage textures_;
+  uint64_t stagedBytes_ = 0;
+  std::vector<vk::BufferCopy> vertexCopies_, indexCopies_;
+  std::vector<vk::BufferImageCopy> textureCopies_;
+};
+
+}  // namespace eye

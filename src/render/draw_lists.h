@@ -1,0 +1,34 @@
+// The draws of a frame in memory that the GPU reads: one record a chunk, one indirect command for its surface and one
+// for each skirt that it needs. Owner thread: render.
+#pragma once
+
+#include "gpu/memory.h"
+#include "render/renderer.h"
+#include "shared/types.h"
+
+namespace eye {
+
+struct DrawCounts {
+  uint32_t commands = 0;
+  uint64_t triangles = 0, vertices = 0;  // vertices: those of the chunks drawn
+};
+
+class DrawLists {
+ public:
+  explicit DrawLists(const GpuDevice& gpu);
+  // Makes room for so many chunks; true where the buffers are new and descriptors must be written again. Nothing may be
+  // in flight.
+  bool reserve(const GpuDevice& gpu, size_t chunks);
+  // Surfaces first, front to back, then the skirts, most of which are hidden then.
+  DrawCounts write(std::span<const ChunkDraw> draws, const Vec3d& eyeEcefM, int textureSize);
+
+  const GpuBuffer& draws() const { return draws_; }
+  const GpuBuffer& commands() const { return commands_; }
+  const GpuBuffer& texelSizes() const { return texelSizes_; }
+
+ private:
+  size_t capacity_ = 0;
+  GpuBuffer draws_, commands_, texelSizes_;
+};
+
+}  // namespace eye

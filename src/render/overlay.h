@@ -1,0 +1,33 @@
+// Dear ImGui over the picture. Works with and without a window. Owner thread: render. One at a time, since Dear ImGui
+// keeps its state in globals.
+#pragma once
+
+#include <functional>
+
+#include "render/targets.h"
+
+struct GLFWwindow;
+
+namespace eye {
+
+class Overlay {
+ public:
+  // `window` may be null. Throws vk::SystemError.
+  Overlay(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat, GLFWwindow* window);
+  ~Overlay();
+  Overlay(const Overlay&) = delete;
+  Overlay& operator=(const Overlay&) = delete;
+
+  void bindTargets(const GpuDevice& gpu, const Targets& targets);
+  // Lets `build` make its windows (ImGui calls) and records their drawing over the colour target, which is in
+  // usageColourTarget before and after.
+  void record(const vk::raii::CommandBuffer& commands, const Targets& targets, const std::function<void()>& build);
+
+ private:
+  GLFWwindow* window_;
+  vk::raii::RenderPass renderPass_{nullptr};
+  vk::raii::DescriptorPool pool_{nullptr};
+  vk::raii::Framebuffer framebuffer_{nullptr};
+};
+
+}  // namespace eye

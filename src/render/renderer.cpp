@@ -1,0 +1,196 @@
+#include "render/renderer.h"
+
+#include <fmt/format.h>
+
+#include "gpu/pipeline_cache.h"
+#include "gpu/timestamps.h"
+#include "render/frame_data.h"
+#include "render/overlay.h"
+#include "render/passes.h"
+#include "render/warm_up.h"
+#include "telemetry/trace.h"
+
+namespace eye {
+
+// In order of construction; destroyed the other way round, after the device has come to rest.
+struct Renderer::Impl {
+  RendererOptions options;
+  std::unique_ptr<GpuDevice> gpu;
+  vk::raii::PipelineCache cache{nullptr};
+  std::unique_ptr<ChunkPools> pools;
+  std::unique_ptr<DrawLists> lists;
+  std::unique_ptr<Passes> passes;
+  std::unique_ptr<Overlay> overlay;
+  std::unique_ptr<Timestamps> timestamps;
+  Targets targets;
+  vk::raii::CommandBuffer commands{nullptr};
+  vk::raii::Fence finished{nullptr};
+  std::vector<PassTime> passTimes;
+
+  void resizeTargets(int widthPx, int heightPx);
+  void record(const FrameInput& input, uint32_t commandCount);
+  void submitAndWait();
+  void readTimes(FrameOutput& output);
+};
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Renderer::~Renderer() {
+  (void)vkDeviceWaitIdle(*impl_->gpu->device);  // not by vk::raii, which throws where the device is lost
+}
+
+Result<std::vector<DeviceDescription>> Renderer::listDevices() {
+  return eye::listDevices();
+}
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
+  try {
+    auto impl = std::make_unique<Impl>();
+    impl->options = options;
+    auto gpu = createDevice({options.device, options.validate, options.window});
+    if (!gpu) return tl::unexpected(gpu.error());
+    impl->gpu = std::move(*gpu);
+    const GpuDevice& device = *impl->gpu;
+    auto pools = ChunkPools::create(device, options.gpuBudgetBytes, options.textureSize);
+    if (!pools) return tl::unexpected(pools.error());
+    impl->pools = std::move(*pools);
+
+    const std::string cachePath = pipelineCachePath(device);
+    impl->cache = loadPipelineCache(device, cachePath);
+    const vk::Format colourFormat = vk::Format::eR8G8B8A8Unorm;
+    impl->passes = std::make_unique<Passes>(device, impl->cache, colourFormat);
+    impl->lists = std::make_unique<DrawLists>(device);
+    impl->overlay = std::make_unique<Overlay>(device, impl->cache, colourFormat, nullptr);
+    impl->timestamps = std::make_unique<Timestamps>(device);
+    impl->passes->bindDraws(device, *impl->lists);
+    impl->passes->bindTextures(device, impl->pools->textures());
+    impl->commands = std::move(
+        vk::raii::CommandBuffers(device.device, {*device.commandPool, vk::CommandBufferLevel::ePrimary, 1}).front());
+    impl->finished = vk::raii::Fence(device.device, vk::FenceCreateInfo{});
+    impl->resizeTargets(options.widthPx, options.heightPx);
+
+    std::unique_ptr<Renderer> renderer(new Renderer(std::move(impl)));
+    if (auto warm = warmUp(*renderer, options); !warm) return tl::unexpected(warm.error());
+    savePipelineCache(renderer->impl_->cache, cachePath);
+    return renderer;
+  } catch (const std::exception& e) {
+    return fail(ErrorKind::unsupported,
+                fmt::format("the graphics device refuses to start ({}): try a smaller --cache-gpu or --size, "
+                            "or another --device",
+                            e.what()));
+  }
+}
+
+std::optional<GpuChunk> Renderer::upload(const LoadedChunk& chunk) {
+  return impl_->pools->upload(chunk);
+}
+void Renderer::release(const GpuChunk& chunk) {
+  impl_->pools->release(chunk);
+}
+uint64_t Renderer::bytesResident() const {
+  return impl_->pools->bytesResident();
+}
+const DeviceDescription& Renderer::device() const {
+  return impl_->gpu->description;
+}
+uint64_t Renderer::validationMessages() const {
+  return impl_->gpu->messages.load();
+}
+
+Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
+  try {
+    Impl& impl = *impl_;
+    impl.resizeTargets(input.view.widthPx, input.view.heightPx);
+    if (impl.lists->reserve(*impl.gpu, input.draws.size())) impl.passes->bindDraws(*impl.gpu, *impl.lists);
+    impl.passes->frame() = frameData(input, impl.options.textureSize);
+    const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
+    impl.record(input, counts.commands);
+    impl.submitAndWait();
+    impl.pools->staged();
+
+    FrameOutput output;
+    output.widthPx = impl.targets.widthPx;
+    output.heightPx = impl.targets.heightPx;
+    output.triangles = counts.triangles;
+    output.vertices = counts.vertices;
+    output.draws = counts.commands;
+    if (input.readColour) output.rgba = impl.targets.colourBack.as<const uint8_t>();
+    if (input.readDepth) output.depth = impl.targets.depthBack.as<const float>();
+    impl.readTimes(output);
+    return output;
+  } catch (const std::exception& e) {
+    return fail(ErrorKind::unsupported,
+                fmt::format("the graphics device failed while drawing ({}): start again, perhaps with "
+                            "another --device",
+                            e.what()));
+  }
+}
+
+void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
+  if (widthPx == targets.widthPx && heightPx == targets.heightPx) return;
+  targets = {};
+  targets = createTargets(*gpu, widthPx, heightPx, vk::Format::eR8G8B8A8Unorm);
+  passes->bindTargets(*gpu, targets);
+  overlay->bindTargets(*gpu, targets);
+}
+
+void Renderer::Impl::record(const FrameInput& input, uint32_t commandCount) {
+  const TraceScope scope("record");
+  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  timestamps->begin(commands);
+  pools->recordUploads(commands);
+  timestamps->mark(commands, "upload");
+  passes->recordGeometry(commands, *gpu, targets, *pools, *lists, commandCount);
+  timestamps->mark(commands, "geometry");
+  passes->recordShade(commands, targets);
+  timestamps->mark(commands, "shade");
+  if (input.overlay) {
+    overlay->record(commands, targets, input.overlay);
+    timestamps->mark(commands, "overlay");
+  }
+  if (input.readColour) {
+    const std::array toCopy{imageBarrier(targets.colour, usageColourTarget(), usageCopySource())};
+    recordBarriers(commands, toCopy);
+    recordReadBack(commands, targets.colour, targets.colourBack);
+  }
+  if (input.readDepth) {
+    const std::array toCopy{imageBarrier(targets.depth, usageSampled(), usageCopySource())};
+    recordBarriers(commands, toCopy);
+    recordReadBack(commands, targets.depth, targets.depthBack);
+  }
+  if (input.readColour || input.readDepth) timestamps->mark(commands, "read_back");
+  commands.end();
+}
+
+void Renderer::Impl::submitAndWait() {
+  const vk::CommandBufferSubmitInfo info(*commands);
+  vk::SubmitInfo2 submit;
+  submit.setCommandBufferInfos(info);
+  gpu->queue.submit2(submit, *finished);
+  const TraceScope scope("wait for the GPU");
+  (void)gpu->device.waitForFences(*finished, true, UINT64_MAX);
+  gpu->device.resetFences(*finished);
+}
+
+void Renderer::Impl::readTimes(FrameOutput& output) {
+  // The GPU's clock is tied to ours by the end of the frame, which the fence has just told.
+  const int64_t endNs = monotonicNs();
+  const auto& spans = timestamps->read();
+  passTimes.clear();
+  if (!spans.empty()) output.gpuMs = spans.back().endMs;
+  for (const Timestamps::Span& span : spans) {
+    passTimes.push_back({span.name, span.endMs - span.beginMs});
+    const auto at = [&](double ms) { return endNs - static_cast<int64_t>((output.gpuMs - ms) * 1e6); };
+    traceSpan("GPU", span.name, at(span.beginMs), at(span.endMs));
+  }
+  output.passes = passTimes;
+}
+
+int Renderer::widthPx() const {
+  return impl_->targets.widthPx;
+}
+int Renderer::heightPx() const {
+  return impl_->targets.heightPx;
+}
+
+}  // namespace eye

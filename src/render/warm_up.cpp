@@ -1,0 +1,47 @@
+#include "render/warm_up.h"
+
+#include <imgui.h>
+
+#include "terrain/chunk_codec.h"
+
+namespace eye {
+namespace {
+
+// One triangle of 20 km, counterclockwise from above, about the point 0 N 0 E.
+LoadedChunk triangle(int textureSize) {
+  LoadedChunk chunk;
+  chunk.mesh.vertices = {
+      {0, -10000, -10000, 0, 0, 0, 0, 0}, {0, 10000, -10000, 0, 65535, 0, 0, 0}, {0, 0, 10000, 0, 0, 65535, 0, 0}};
+  chunk.mesh.indices = {0, 1, 2};
+  chunk.surfaceIndexCount = 3;
+  chunk.texels.assign(mipChainBytes(textureSize), 128);
+  return chunk;
+}
+
+}  // namespace
+
+Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
+  const auto gpu = renderer.upload(triangle(options.textureSize));
+  if (!gpu) return fail(ErrorKind::usage, "the GPU budget holds not one chunk: give a larger --cache-gpu");
+  ChunkDraw draw;
+  draw.gpu = *gpu;
+  draw.originLattice = LatticePoint(static_cast<int64_t>(kSemiMajorM), 0, 0);
+  draw.upEcef = {1, 0, 0};
+  draw.textureLayer = static_cast<uint32_t>(gpu->textureLayer);
+  FrameInput input;
+  const Pose pose{{0, 0, 10000}, 0, -90, 0};
+  input.view =
+      makeView(pose, symmetricFrustum(60, options.widthPx, options.heightPx, 1), options.widthPx, options.heightPx);
+  input.draws = {&draw, 1};
+  input.overlay = [] {
+    ImGui::Begin("warm-up");
+    ImGui::TextUnformatted("every pipeline draws once");
+    ImGui::End();
+  };
+  auto drawn = renderer.drawFrame(input);
+  renderer.release(*gpu);
+  if (!drawn) return tl::unexpected(drawn.error());
+  return {};
+}
+
+}  // namespace eye
