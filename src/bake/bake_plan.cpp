@@ -1,0 +1,91 @@
+#include "bake/bake_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/tile_painter.h"
+
+namespace eye {
+
+namespace {
+
+constexpr double kThreeArcSecondsDeg = 3.0 / 3600;
+// Half a post: the palette's slopes and borders have that much detail between posts, finer texels would only blur it.
+constexpr double kPaletteDetailPosts = 0.5;
+// Texels up to so many times the source's detail are as good as it, at a quarter of the bytes of the next level.
+constexpr double kTexelSlack = 1.4;
+
+double cellHeightDeg(int level) {
+  return 90 / std::exp2(level);
+}
+
+bool meets(const TileBounds& a, const TileBounds& b) {
+  return a.southDeg < b.northDeg && b.southDeg < a.northDeg && a.westDeg < b.eastDeg && b.westDeg < a.eastDeg;
+}
+
+// Size of the finest detail that pictures in the region can show, degrees; 0 where there is none to show.
+double pictureDetailDeg(const BakePlan& plan, const TileBounds& region) {
+  const double paletteDeg = plan.surface->finestSpacingDeg(region) * kPaletteDetailPosts;
+  const double pixelDeg = plan.imagery != nullptr ? plan.imagery->finestPixelDeg(region) : 0;
+  if (paletteDeg == 0 || pixelDeg == 0) return std::max(paletteDeg, pixelDeg);
+  return std::min(paletteDeg, pixelDeg);
+}
+
+bool isFinerThanTexels(const BakePlan& plan, const TileBounds& region, int level) {
+  const double detailDeg = pictureDetailDeg(plan, region);
+  return detailDeg > 0 && texelDeg(level, plan.textureSize) > kTexelSlack * detailDeg;
+}
+
+}  // namespace
+
+double BakePlan::toleranceM(int level) const {
+  return finestErrorM * std::exp2(std::max(0, meshLevel - level));
+}
+
+bool BakePlan::wantsFinerImagery(const TileKey& key) const {
+  return key.level() < maxLevel && isFinerThanTexels(*this, key.bounds(), key.level());
+}
+
+bool BakePlan::hasImagery(const TileKey& key) const {
+  const std::optional<TileKey> parent = key.parent();
+  if (!parent || key.isPolar() || parent->isPolar()) return true;
+  return isFinerThanTexels(*this, key.bounds(), parent->level());
+}
+
+bool BakePlan::wantsChildren(const TileKey& key, double geometricErrorM) const {
+  if (key.level() >= maxLevel || (region && !meets(*region, key.bounds()))) return false;
+  if (wantsFinerImagery(key)) return true;
+  const double spacingDeg = surface->finestSpacingDeg(key.bounds());
+  return spacingDeg > 0 && key.level() < meshLevel && cellHeightDeg(key.level()) > kLeafPosts * spacingDeg &&
+         geometricErrorM > finestErrorM;
+}
+
+double BakePlan::texelErrorM(const TileKey& key) const {
+  const bool refines = wantsFinerImagery(key) && (!region || meets(*region, key.bounds()));
+  return refines ? texelM(key.level(), textureSize) : 0;
+}
+
+BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery, double finestSpacingDeg,
+                  const PlanOptions& options) {
+  BakePlan plan;
+  plan.surface = &surface;
+  plan.imagery = imagery;
+  plan.textureSize = options.textureSize;
+  plan.region = options.region;
+  int naturalLevel = 0;
+  while (naturalLevel < kMaxLevel && cellHeightDeg(naturalLevel) > kLeafPosts * finestSpacingDeg) ++naturalLevel;
+  int pictureLevel = 0;
+  const double pixelDeg = imagery != nullptr ? imagery->finestPixelDeg({-90, 90, -180, 180}) : 0;
+  while (pixelDeg > 0 && pictureLevel < kMaxLevel &&
+         texelDeg(pictureLevel, plan.textureSize) > kTexelSlack * pixelDeg) {
+    ++pictureLevel;
+  }
+  plan.maxLevel = std::min(options.maxLevel.value_or(std::max(naturalLevel, pictureLevel)), kMaxLevel);
+  plan.meshLevel = std::min(naturalLevel, plan.maxLevel);
+  // A bake cut short at a coarser level is as exact there as an uncut one would be.
+  const double naturalErrorM = kFinestErrorM * std::max(1.0, finestSpacingDeg / kThreeArcSecondsDeg);
+  plan.finestErrorM = options.errorM.value_or(naturalErrorM * std::exp2(naturalLevel - plan.meshLevel));
+  return plan;
+}
+
+}  // namespace eye

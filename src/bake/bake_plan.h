@@ -1,0 +1,46 @@
+// Which tiles a bake makes, how exact they are and which carry a picture. Pure decisions.
+#pragma once
+
+#include <optional>
+
+#include "bake/elevation.h"
+#include "bake/imagery_mosaic.h"
+#include "terrain/chunk.h"
+
+namespace eye {
+
+// A leaf spans about so many posts of its source: with a tolerance of 0.25 m at 3 arc-seconds some 100 triangles.
+inline constexpr int kLeafPosts = 8;
+// The finest tolerance for 3-arc-second posts and finer ones; coarser posts get proportionally more.
+inline constexpr double kFinestErrorM = 0.25;
+
+// The sources outlive the plan. Thread: any number at once.
+struct BakePlan {
+  const ElevationSurface* surface = nullptr;
+  const ImageryMosaic* imagery = nullptr;  // may be null
+  int textureSize = 128;
+  int maxLevel = 0;
+  int meshLevel = 0;  // the level whose tolerance is finestErrorM; below it only imagery refines
+  double finestErrorM = kFinestErrorM;
+  std::optional<TileBounds> region;  // refine only what meets it
+
+  double toleranceM(int level) const;
+  bool hasImagery(const TileKey& key) const;
+  // Whether a child could show finer imagery than the tile.
+  bool wantsFinerImagery(const TileKey& key) const;
+  bool wantsChildren(const TileKey& key, double geometricErrorM) const;
+  double texelErrorM(const TileKey& key) const;
+};
+
+struct PlanOptions {
+  int textureSize = 128;
+  std::optional<int> maxLevel;
+  std::optional<double> errorM;
+  std::optional<TileBounds> region;
+};
+
+// `finestSpacingDeg`: of all elevation sources.
+BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery, double finestSpacingDeg,
+                  const PlanOptions& options);
+
+}  // namespace eye
