@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include "base/byte_writer.h"

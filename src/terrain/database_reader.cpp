@@ -1,6 +1,7 @@
 // The reading half of database.h.
 #include <filesystem>
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 
 #include "terrain/chunk_record.h"

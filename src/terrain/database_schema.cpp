@@ -7,6 +7,7 @@
 #include <map>
 #include <variant>
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 
 #include "base/byte_writer.h"

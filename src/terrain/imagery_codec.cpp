@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <bit>
 
+#include <fmt/format.h>
+
 #include "base/byte_reader.h"
 #include "base/byte_writer.h"
 #include "terrain/chunk_codec.h"

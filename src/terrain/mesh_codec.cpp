@@ -1,6 +1,7 @@
 // The mesh half of chunk_codec.h. docs/TILE_FORMAT.md has the layout byte by byte.
 #include <numeric>
 
+#include <fmt/format.h>
 #include <meshoptimizer.h>
 
 #include "base/byte_reader.h"

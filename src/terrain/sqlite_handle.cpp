@@ -1,5 +1,6 @@
 #include "terrain/sqlite_handle.h"
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 
 namespace eye {
