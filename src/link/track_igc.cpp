@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+
 #include "link/pose_limits.h"
 #include "link/text_lines.h"
 #include "link/track_file.h"
@@ -15,6 +18,7 @@ constexpr size_t kFixChars = 35;
 constexpr double kDayS = 86400;
 
 struct IgcFix {
+  double dayS = 0;  // the day's beginning, from the last date record; 0 before the first
   double secondOfDay = 0;
   double latDeg = 0, lonDeg = 0;
   bool threeD = false;
@@ -37,6 +41,23 @@ std::optional<int> altitude(std::string_view line, size_t at) {
   return below ? std::optional(-*below) : std::nullopt;
 }
 
+// "HFDTE280614" or "HFDTEDATE:280614,01": the day's beginning in seconds since 1970. Nothing where there is no such
+// day; recorders write 000000 before they know.
+std::optional<double> readDate(std::string_view line) {
+  line.remove_prefix(std::string_view("HFDTE").size());
+  if (line.starts_with("DATE:")) line.remove_prefix(5);
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  if (line.size() < 6) return std::nullopt;
+  const auto day = digits(line, 0, 2), month = digits(line, 2, 2), year = digits(line, 4, 2);
+  if (!day || !month || !year) return std::nullopt;
+  // Flight recorders are younger than 1990.
+  const std::chrono::year_month_day date(std::chrono::year(*year + (*year >= 90 ? 1900 : 2000)),
+                                         std::chrono::month(static_cast<unsigned>(*month)),
+                                         std::chrono::day(static_cast<unsigned>(*day)));
+  if (!date.ok()) return std::nullopt;
+  return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()) * kDayS;
+}
+
 Result<IgcFix> readFix(std::string_view line, size_t number) {
   const auto bad = [&](const char* what) {
     return fail(ErrorKind::badData, fmt::format("line {}: B record {}", number, what));
@@ -47,9 +68,9 @@ Result<IgcFix> readFix(std::string_view line, size_t number) {
   const auto latDeg = digits(line, 7, 2), latMilliMin = digits(line, 9, 5);
   const auto lonDeg = digits(line, 15, 3), lonMilliMin = digits(line, 18, 5);
   const char northSouth = line[14], eastWest = line[23], validity = line[24];
-  if (!latDeg || !latMilliMin || *latMilliMin >= 60000 || (northSouth != 'N' && northSouth != 'S'))
+  if (!latDeg || !latMilliMin || *latMilliMin > 60000 || (northSouth != 'N' && northSouth != 'S'))
     return bad("has no latitude DDMMmmmN");
-  if (!lonDeg || !lonMilliMin || *lonMilliMin >= 60000 || (eastWest != 'E' && eastWest != 'W'))
+  if (!lonDeg || !lonMilliMin || *lonMilliMin > 60000 || (eastWest != 'E' && eastWest != 'W'))
     return bad("has no longitude DDDMMmmmE");
   if (validity != 'A' && validity != 'V') return bad("is neither A (3D) nor V (2D)");
   const auto pressureAlt = altitude(line, 25), gnssAlt = altitude(line, 30);
@@ -80,24 +101,35 @@ bool hasGnssAltitude(const std::vector<IgcFix>& fixes) {
 Result<Track> parseIgcTrack(std::string_view text) {
   TextLines lines(text);
   std::vector<IgcFix> records;
+  double dateS = 0;
   while (const auto line = lines.next()) {
+    if (line->starts_with("HFDTE")) {
+      const bool first = dateS == 0;
+      dateS = readDate(*line).value_or(dateS);
+      if (first)  // what came before it knew its date is of the same day
+        for (IgcFix& record : records) record.dayS = dateS;
+    }
     if (!line->starts_with('B')) continue;
-    const auto fix = readFix(*line, lines.number());
+    auto fix = readFix(*line, lines.number());
     if (!fix) return tl::unexpected(fix.error());
     if (records.size() == kMaxTrackSamples)
       return fail(ErrorKind::badData, fmt::format("line {}: more than {} fixes; cut the track into parts",
                                                   lines.number(), kMaxTrackSamples));
+    fix->dayS = dateS;
     records.push_back(*fix);
   }
 
+  // Files of several flights need not have them in order.
+  std::stable_sort(records.begin(), records.end(), [](const IgcFix& a, const IgcFix& b) { return a.dayS < b.dayS; });
   const bool gnss = hasGnssAltitude(records);
   std::vector<TrackFix> fixes;
-  double dayS = 0;
+  double dayS = 0, midnightsS = 0;
   for (const IgcFix& record : records) {
     if (gnss && !record.threeD) continue;
-    double timeS = dayS + record.secondOfDay;
-    if (!fixes.empty() && fixes.back().timeS - timeS > kDayS / 2) {  // past midnight
-      dayS += kDayS;
+    if (record.dayS != dayS) dayS = record.dayS, midnightsS = 0;
+    double timeS = dayS + midnightsS + record.secondOfDay;
+    if (!fixes.empty() && fixes.back().timeS - timeS > kDayS / 2) {  // past midnight: the date is not written again
+      midnightsS += kDayS;
       timeS += kDayS;
     }
     // A clock set back a little by the first good fix, or two fixes in one second: the earlier one counts.
