@@ -52,12 +52,12 @@ bool Horizon::hides(const ChunkMeta& meta) const {
   return belowHorizon(eyeScaled_, meta.horizonPointScaled * (lengthRaised / std::sqrt(lengthSquared)));
 }
 
-Horizon horizonForTolerance(const Vec3d& eyeEcefM, double lowestHeightM, double greatestErrorM, double tolerancePerM) {
-  const double lowestM = std::max(0.0, -lowestHeightM);
-  Horizon horizon(eyeEcefM, lowestM);
-  // Depth and reach depend on each other; near the fixed point a few steps do, and the walk checks what is left.
+Horizon horizonForTolerance(const Vec3d& eyeEcefM, double greatestErrorM, double tolerancePerM) {
+  Horizon horizon(eyeEcefM, 0);
+  // Twice the error: heights in the metadata may or may not be widened by it. Depth and reach depend on each other; a
+  // few steps come near the fixed point, and the walk checks what is left.
   for (int i = 0; i < 6; ++i)
-    horizon = Horizon(eyeEcefM, lowestM + std::min(1.05 * tolerancePerM * horizon.reachM(), greatestErrorM));
+    horizon = Horizon(eyeEcefM, 2 * std::min(1.05 * tolerancePerM * horizon.reachM(), greatestErrorM));
   return horizon;
 }
 

@@ -31,8 +31,8 @@ class Horizon {
   Vec3d eyeScaled_{};  // ecef over the shrunk semi-axes
 };
 
-// A first depth that terrain within the tolerance never exceeds: its sag grows with its distance, and what hides lies
-// no farther than the horizon. `tolerancePerM`: tolerated error over distance.
-Horizon horizonForTolerance(const Vec3d& eyeEcefM, double lowestHeightM, double greatestErrorM, double tolerancePerM);
+// A first depth, which terrain within the tolerance and above the ellipsoid never exceeds: its sag grows with its
+// distance, and what hides lies no farther than the horizon. `tolerancePerM`: tolerated error over distance.
+Horizon horizonForTolerance(const Vec3d& eyeEcefM, double greatestErrorM, double tolerancePerM);
 
 }  // namespace eye

@@ -138,8 +138,7 @@ class Walk {
 Horizon firstHorizon(const TerrainCache& cache, const View& view, const LodOptions& options) {
   double greatestErrorM = 0;  // errors fall from parent to child
   for (uint32_t root : cache.roots()) greatestErrorM = std::max(greatestErrorM, cache.node(root).meta.geometricErrorM);
-  return horizonForTolerance(view.eyeEcefM, cache.lowestHeightM(), greatestErrorM,
-                             options.ssePx / pixelsPerRadian(view));
+  return horizonForTolerance(view.eyeEcefM, greatestErrorM, options.ssePx / pixelsPerRadian(view));
 }
 
 // Positive doubles order like their bits; the low ones make room for the index, so that a sort moves eight bytes.
@@ -185,9 +184,9 @@ double distanceToBox(const Vec3d& pointEcefM, const OrientedBox& box) {
 void selectChunks(TerrainCache& cache, const View& view, const LodOptions& options, Selection& out) {
   const TraceScope trace("select chunks");
   Horizon horizon = firstHorizon(cache, view, options);
-  // Again with a lower ellipsoid where something coarse, such as a root while its children are on their way, sags below
-  // it: each time by more, the roots' error at most. With all in that is within the tolerance, the first walk stands.
-  // A frame of its own for each, lest the last one's marks be taken for its own.
+  // Again with a lower ellipsoid where a sea's floor or something coarse, such as a root while its children are on
+  // their way, sags below it: each time by more, the roots' error at most. With all in that is within the tolerance,
+  // the first walk stands. A frame of its own for each, lest the last one's marks be taken for its own.
   for (;;) {
     out.walked.clear();
     out.coarse.clear();

@@ -130,7 +130,6 @@ void TerrainCache::place(uint32_t index, uint32_t parent, const ResidentChunk& c
   }
   nodes_[index] = node;
   indexOf_[chunk.meta.key] = index;
-  lowestHeightM_ = std::min(lowestHeightM_, chunk.meta.minHeightM);
   link(index);
 }
 

@@ -81,8 +81,6 @@ class TerrainCache {
   uint64_t frame() const { return frame_; }  // counts calls of beginFrame
   void beginFrame() { ++frame_; }            // selectChunks calls it
   size_t size() const { return indexOf_.size(); }
-  // The lowest minHeightM that was ever resident: a bound for what the ellipsoid may be trusted to hide.
-  double lowestHeightM() const { return lowestHeightM_; }
 
   // Insertion and eviction are the pager's. Indices of other nodes stay valid, references do not.
   // The eight roots in the order of their octants, once, all with imagery.
@@ -110,7 +108,6 @@ class TerrainCache {
   std::vector<uint32_t> roots_;
   std::unordered_map<TileKey, uint32_t> indexOf_;
   uint64_t frame_ = 0;
-  double lowestHeightM_ = 0;
 };
 
 }  // namespace eye
