@@ -44,12 +44,12 @@ static_assert(sizeof(ChunkVertex) == 16);
 struct ChunkMesh {
   std::vector<ChunkVertex> vertices;
   std::vector<uint16_t> indices;
-  std::array<uint16_t, 4>
-      boundary{};  // vertices of the loop's sides, without each side's last; 0 where a side is a point
+  // Vertices of the loop's sides, without each side's last; 0 for a pole cell's poleward side, which is a point.
+  std::array<uint16_t, 4> boundary{};
 };
 
-// The sides in the order of the boundary loop, counterclockwise from above: south, east, north, west, for an ordinary
-// cell; a northern pole cell lacks north; a southern pole cell lacks south (east, north, west).
+// The sides in the order of the boundary loop: south, east, north, west, the order of Side, in every cell. A pole
+// cell's poleward side keeps its place there, with no vertices.
 std::array<Side, 4> loopSides(const TileKey& key);
 
 struct OrientedBox {
@@ -81,7 +81,9 @@ struct ChunkMeta {
 };
 
 // Vertices and triangles of the skirts, made when a chunk is decoded, never stored: for each side a strip from the
-// boundary's vertices to a lower rim whose skirtSides tell the shader how to move it. Appended to `mesh`.
+// boundary's vertices to a lower rim whose skirtSides tell the shader how to move it; front-facing from outside. The
+// rim has one vertex for each of the loop's (a corner's hangs from both its sides), appended in the loop's order:
+// vertices and loop together must not exceed 65535.
 struct SkirtRange {
   uint32_t firstIndex = 0, indexCount = 0;
 };

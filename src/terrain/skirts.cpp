@@ -12,7 +12,7 @@ std::array<SkirtRange, 4> appendSkirts(const TileKey& key, ChunkMesh& mesh) {
   const size_t surfaceVertices = mesh.vertices.size();
   size_t loopVertices = 0;
   for (const uint16_t count : mesh.boundary) loopVertices += count;
-  EYE_CHECK(loopVertices <= surfaceVertices);
+  EYE_CHECK(loopVertices >= 3 && loopVertices <= surfaceVertices);
   EYE_CHECK(surfaceVertices + loopVertices <= 65535);  // what 16-bit indices reach
 
   // One rim vertex for each of the loop's; a corner's hangs from both its sides, so that flared skirts meet there.

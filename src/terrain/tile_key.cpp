@@ -43,14 +43,11 @@ TileKey fromColumnFromDateLine(int level, bool isSouthern, uint32_t row, uint32_
   return TileKey::fromGrid(level, octant + (isSouthern ? 4 : 0), row, isWest ? columns - 1 - fromWest : fromWest);
 }
 
-// The interval [n * size, (n + 1) * size) that holds value, or with `ownsUpper` (n * size, (n + 1) * size]. Size is a
-// power of two of 90 degrees, so its multiples are exact; the quotient is not, hence the corrections.
+// The interval [n * size, (n + 1) * size) that holds value, or with `ownsUpper` (n * size, (n + 1) * size]. Size is 90
+// over a power of two, so its multiples are exact, and a rounded quotient is never below the true one's floor.
 uint32_t intervalOf(double value, double size, uint32_t count, bool ownsUpper) {
-  const double guess = std::clamp(std::floor(value / size), 0.0, static_cast<double>(count - 1));
-  uint32_t n = static_cast<uint32_t>(guess);
-  const auto isBelow = [&](uint32_t i) { return ownsUpper ? value <= i * size : value < i * size; };
-  while (n > 0 && isBelow(n)) --n;
-  while (n + 1 < count && !isBelow(n + 1)) ++n;
+  uint32_t n = static_cast<uint32_t>(std::min(std::floor(value / size), static_cast<double>(count - 1)));
+  while (n > 0 && (ownsUpper ? value <= n * size : value < n * size)) --n;
   return n;
 }
 
