@@ -1,8 +1,10 @@
 #include "render/renderer.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "gpu/pipeline_cache.h"
+#include "gpu/swapchain.h"
 #include "gpu/timestamps.h"
 #include "render/frame_data.h"
 #include "render/overlay.h"
@@ -15,7 +17,9 @@ namespace eye {
 // In order of construction; destroyed the other way round, after the device has come to rest.
 struct Renderer::Impl {
   RendererOptions options;
+  std::unique_ptr<Window> window;  // null off-screen, as is the swapchain
   std::unique_ptr<GpuDevice> gpu;
+  std::unique_ptr<Swapchain> swapchain;
   vk::raii::PipelineCache cache{nullptr};
   std::unique_ptr<ChunkPools> pools;
   std::unique_ptr<DrawLists> lists;
@@ -26,10 +30,14 @@ struct Renderer::Impl {
   vk::raii::CommandBuffer commands{nullptr};
   vk::raii::Fence finished{nullptr};
   std::vector<PassTime> passTimes;
+  std::vector<uint8_t> rgba;  // the picture read back, where the window's pixels are in another order
+  bool drawn = false;         // the colour target holds a whole picture, in usageCopySource
 
+  vk::Format colourFormat() const;
   void resizeTargets(int widthPx, int heightPx);
-  void record(const FrameInput& input, uint32_t commandCount);
-  void submitAndWait();
+  void record(const FrameInput& input, uint32_t commandCount, std::optional<uint32_t> shown);
+  void submitAndWait(std::optional<uint32_t> shown);
+  std::span<const uint8_t> pictureRgba();
   void readTimes(FrameOutput& output);
 };
 
@@ -47,6 +55,11 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
   try {
     auto impl = std::make_unique<Impl>();
     impl->options = options;
+    if (options.window) {
+      auto window = Window::open({options.widthPx, options.heightPx, options.fullscreen, options.monitor});
+      if (!window) return tl::unexpected(window.error());
+      impl->window = std::move(*window);
+    }
     auto gpu = createDevice({options.device, options.validate, options.window});
     if (!gpu) return tl::unexpected(gpu.error());
     impl->gpu = std::move(*gpu);
@@ -55,19 +68,20 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     if (!pools) return tl::unexpected(pools.error());
     impl->pools = std::move(*pools);
 
+    if (options.window) impl->swapchain = std::make_unique<Swapchain>(device, *impl->window, options.vsync);
+
     const std::string cachePath = pipelineCachePath(device);
     impl->cache = loadPipelineCache(device, cachePath);
-    const vk::Format colourFormat = vk::Format::eR8G8B8A8Unorm;
-    impl->passes = std::make_unique<Passes>(device, impl->cache, colourFormat);
+    GLFWwindow* window = options.window ? impl->window->handle() : nullptr;
+    impl->passes = std::make_unique<Passes>(device, impl->cache, impl->colourFormat());
     impl->lists = std::make_unique<DrawLists>(device);
-    impl->overlay = std::make_unique<Overlay>(device, impl->cache, colourFormat, nullptr);
+    impl->overlay = std::make_unique<Overlay>(device, impl->cache, impl->colourFormat(), window);
     impl->timestamps = std::make_unique<Timestamps>(device);
     impl->passes->bindDraws(device, *impl->lists);
     impl->passes->bindTextures(device, impl->pools->textures());
-    impl->commands = std::move(
-        vk::raii::CommandBuffers(device.device, {*device.commandPool, vk::CommandBufferLevel::ePrimary, 1}).front());
+    const vk::CommandBufferAllocateInfo one(*device.commandPool, vk::CommandBufferLevel::ePrimary, 1);
+    impl->commands = std::move(vk::raii::CommandBuffers(device.device, one).front());
     impl->finished = vk::raii::Fence(device.device, vk::FenceCreateInfo{});
-    impl->resizeTargets(options.widthPx, options.heightPx);
 
     std::unique_ptr<Renderer> renderer(new Renderer(std::move(impl)));
     if (auto warm = warmUp(*renderer, options); !warm) return tl::unexpected(warm.error());
@@ -104,9 +118,12 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     if (impl.lists->reserve(*impl.gpu, input.draws.size())) impl.passes->bindDraws(*impl.gpu, *impl.lists);
     impl.passes->frame() = frameData(input, impl.options.textureSize);
     const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
-    impl.record(input, counts.commands);
-    impl.submitAndWait();
+    std::optional<uint32_t> shown;
+    if (impl.swapchain != nullptr) shown = impl.swapchain->acquire(*impl.gpu);
+    impl.record(input, counts.commands, shown);
+    impl.submitAndWait(shown);
     impl.pools->staged();
+    impl.drawn = true;
 
     FrameOutput output;
     output.widthPx = impl.targets.widthPx;
@@ -114,7 +131,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     output.triangles = counts.triangles;
     output.vertices = counts.vertices;
     output.draws = counts.commands;
-    if (input.readColour) output.rgba = impl.targets.colourBack.as<const uint8_t>();
+    if (input.readColour) output.rgba = impl.pictureRgba();
     if (input.readDepth) output.depth = impl.targets.depthBack.as<const float>();
     impl.readTimes(output);
     return output;
@@ -128,13 +145,14 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
 
 void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
   if (widthPx == targets.widthPx && heightPx == targets.heightPx) return;
-  targets = {};
-  targets = createTargets(*gpu, widthPx, heightPx, vk::Format::eR8G8B8A8Unorm);
+  targets = {};  // the old ones first: both at once may not fit
+  drawn = false;
+  targets = createTargets(*gpu, widthPx, heightPx, colourFormat());
   passes->bindTargets(*gpu, targets);
   overlay->bindTargets(*gpu, targets);
 }
 
-void Renderer::Impl::record(const FrameInput& input, uint32_t commandCount) {
+void Renderer::Impl::record(const FrameInput& input, uint32_t commandCount, std::optional<uint32_t> shown) {
   const TraceScope scope("record");
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   timestamps->begin(commands);
@@ -148,25 +166,31 @@ void Renderer::Impl::record(const FrameInput& input, uint32_t commandCount) {
     overlay->record(commands, targets, input.overlay);
     timestamps->mark(commands, "overlay");
   }
-  if (input.readColour) {
-    const std::array toCopy{imageBarrier(targets.colour, usageColourTarget(), usageCopySource())};
-    recordBarriers(commands, toCopy);
-    recordReadBack(commands, targets.colour, targets.colourBack);
-  }
+  const std::array toCopy{imageBarrier(targets.colour, usageColourTarget(), usageCopySource())};
+  recordBarriers(commands, toCopy);
+  if (input.readColour) recordReadBack(commands, targets.colour, targets.colourBack);
   if (input.readDepth) {
-    const std::array toCopy{imageBarrier(targets.depth, usageSampled(), usageCopySource())};
-    recordBarriers(commands, toCopy);
+    const std::array depthToCopy{imageBarrier(targets.depth, usageSampled(), usageCopySource())};
+    recordBarriers(commands, depthToCopy);
     recordReadBack(commands, targets.depth, targets.depthBack);
   }
   if (input.readColour || input.readDepth) timestamps->mark(commands, "read_back");
+  if (shown) {
+    swapchain->recordCopy(commands, targets.colour, *shown);
+    timestamps->mark(commands, "present");
+  }
   commands.end();
 }
 
-void Renderer::Impl::submitAndWait() {
-  const vk::CommandBufferSubmitInfo info(*commands);
-  vk::SubmitInfo2 submit;
-  submit.setCommandBufferInfos(info);
-  gpu->queue.submit2(submit, *finished);
+void Renderer::Impl::submitAndWait(std::optional<uint32_t> shown) {
+  if (shown) {
+    swapchain->submitAndPresent(*gpu, *commands, *shown, *finished);
+  } else {
+    const vk::CommandBufferSubmitInfo info(*commands);
+    vk::SubmitInfo2 submit;
+    submit.setCommandBufferInfos(info);
+    gpu->queue.submit2(submit, *finished);
+  }
   const TraceScope scope("wait for the GPU");
   (void)gpu->device.waitForFences(*finished, true, UINT64_MAX);
   gpu->device.resetFences(*finished);
@@ -186,11 +210,57 @@ void Renderer::Impl::readTimes(FrameOutput& output) {
   output.passes = passTimes;
 }
 
-int Renderer::widthPx() const {
-  return impl_->targets.widthPx;
+vk::Format Renderer::Impl::colourFormat() const {
+  const bool asWindow = swapchain != nullptr && swapchain->format() == vk::Format::eB8G8R8A8Unorm;
+  return asWindow ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
 }
+
+std::span<const uint8_t> Renderer::Impl::pictureRgba() {
+  const std::span<const uint8_t> read = targets.colourBack.as<const uint8_t>();
+  if (colourFormat() == vk::Format::eR8G8B8A8Unorm) return read;
+  rgba.resize(read.size());
+  for (size_t i = 0; i < read.size(); i += 4) {
+    rgba[i] = read[i + 2];
+    rgba[i + 1] = read[i + 1];
+    rgba[i + 2] = read[i];
+    rgba[i + 3] = read[i + 3];
+  }
+  return rgba;
+}
+
+void Renderer::presentAgain() {
+  Impl& impl = *impl_;
+  if (impl.swapchain == nullptr || !impl.drawn) return;
+  try {
+    const std::optional<uint32_t> shown = impl.swapchain->acquire(*impl.gpu);
+    if (!shown) return;
+    impl.commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    impl.swapchain->recordCopy(impl.commands, impl.targets.colour, *shown);
+    impl.commands.end();
+    impl.submitAndWait(shown);
+  } catch (const vk::SystemError& e) {
+    spdlog::debug("the last picture cannot be shown again: {}", e.what());  // the next drawFrame reports what is wrong
+  }
+}
+
+bool Renderer::pollWindow() {
+  return impl_->window == nullptr || impl_->window->poll();
+}
+
+bool Renderer::overlayWanted() const {
+  return impl_->window != nullptr && impl_->window->overlayWanted();
+}
+
+int Renderer::widthPx() const {
+  int widthPx = impl_->options.widthPx, heightPx = 0;
+  if (impl_->window != nullptr) impl_->window->sizePx(widthPx, heightPx);
+  return widthPx > 0 ? widthPx : impl_->options.widthPx;  // 0: minimised
+}
+
 int Renderer::heightPx() const {
-  return impl_->targets.heightPx;
+  int widthPx = 0, heightPx = impl_->options.heightPx;
+  if (impl_->window != nullptr) impl_->window->sizePx(widthPx, heightPx);
+  return heightPx > 0 ? heightPx : impl_->options.heightPx;
 }
 
 }  // namespace eye

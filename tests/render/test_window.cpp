@@ -1,0 +1,95 @@
+// A real window on a virtual display: create, draw, resize, show again, close.
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+#include <cstdlib>
+
+#include "render/scene.h"
+
+using namespace eye;
+using namespace eye::test;
+
+namespace {
+
+// Xvfb on a display number of its own choosing; DISPLAY is set for as long as this lives.
+class VirtualDisplay {
+ public:
+  VirtualDisplay() {
+    int ends[2];
+    if (pipe(ends) != 0) return;
+    child_ = fork();
+    if (child_ == 0) {
+      const std::string end = std::to_string(ends[1]);
+      close(ends[0]);
+      (void)!freopen("/dev/null", "w", stderr);
+      execlp("Xvfb", "Xvfb", "-displayfd", end.c_str(), "-screen", "0", "1024x768x24", "-nolisten", "tcp", nullptr);
+      _exit(127);
+    }
+    close(ends[1]);
+    char text[16] = {};
+    const ssize_t got = read(ends[0], text, sizeof(text) - 1);
+    close(ends[0]);
+    if (got <= 0) return;
+    running_ = true;
+    setenv("DISPLAY", fmt::format(":{}", std::atoi(text)).c_str(), 1);
+  }
+  ~VirtualDisplay() {
+    unsetenv("DISPLAY");
+    if (child_ <= 0) return;
+    kill(child_, SIGTERM);
+    waitpid(child_, nullptr, 0);
+  }
+  bool running() const { return running_; }
+
+ private:
+  pid_t child_ = -1;
+  bool running_ = false;
+};
+
+}  // namespace
+
+TEST_CASE("a window shows frames through a change of size, validation clean") {
+  const VirtualDisplay display;
+  if (!display.running()) {
+    WARN("Xvfb is not installed: the window is not tested");
+    return;
+  }
+  RendererOptions options;
+  options.window = options.validate = true;
+  options.widthPx = 320;
+  options.heightPx = 240;
+  const auto renderer = makeRenderer(options);
+  if (!renderer) return;
+  CHECK(renderer->pollWindow());
+  CHECK(renderer->widthPx() == 320);
+  CHECK_FALSE(renderer->overlayWanted());
+  const Pose pose{{48.8, 20.0, 3000}, 0, -8, 0};
+  const auto draws = mountains(*renderer, 3, ecefFromGeodetic(pose.position));
+  // The last size is not the window's: the picture is scaled into it, as for a frame while it is being resized.
+  for (const auto& [width, height] : {std::pair{320, 240}, {320, 240}, {400, 300}}) {
+    FrameInput input = lookFrom(pose, width, height);
+    input.draws = draws;
+    const auto frame = renderer->drawFrame(input);
+    REQUIRE(frame.has_value());
+    CHECK(frame->widthPx == width);
+    CHECK(frame->rgba.size() == static_cast<size_t>(width * height * 4));
+    CHECK(frame->rgba[2] > frame->rgba[0]);  // the sky is bluer than red, whatever the window's order of channels
+    CHECK(std::string(frame->passes.back().name) == "present");
+    renderer->presentAgain();
+    CHECK(renderer->pollWindow());
+  }
+  CHECK(renderer->validationMessages() == 0);
+}
+
+TEST_CASE("without a display the error says what to do") {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  RendererOptions options;
+  options.window = true;
+  const auto made = Renderer::create(options);
+  REQUIRE_FALSE(made.has_value());
+  CHECK(made.error().message.find("--headless") != std::string::npos);
+}
