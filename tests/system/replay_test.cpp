@@ -1,0 +1,138 @@
+// A recorded take-off over UDP at real time: every packet arrives and is counted, and what is drawn is where a packet
+// says.
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <bit>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "system/program.h"
+#include "system/wgs84.h"
+
+namespace eye::truth {
+namespace {
+
+constexpr double kSeconds = 6;
+
+// A UDP port of the loopback that nobody has now.
+int freePort() {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  REQUIRE(bind(descriptor, reinterpret_cast<sockaddr*>(&address), size) == 0);
+  REQUIRE(getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  close(descriptor);
+  return ntohs(address.sin_port);
+}
+
+double bigEndianDouble(const std::string& bytes, size_t at) {
+  uint64_t value = 0;
+  for (size_t i = 0; i < 8; ++i) value = value << 8 | static_cast<uint8_t>(bytes[at + i]);
+  return std::bit_cast<double>(value);
+}
+
+// Positions of a little-endian classic pcap of Ethernet frames: found by the version 24 that starts each payload of 408
+// bytes. Longitude at 8, latitude at 16 (radians), altitude at 24.
+std::vector<Place> positionsIn(const std::string& capture) {
+  const std::string bytes = readText(capture);
+  std::vector<Place> places;
+  size_t at = 24;
+  while (at + 16 <= bytes.size()) {
+    uint32_t length = 0;
+    for (size_t i = 0; i < 4; ++i) length |= static_cast<uint32_t>(static_cast<uint8_t>(bytes[at + 8 + i])) << (8 * i);
+    const size_t end = at + 16 + length;
+    if (end > bytes.size()) break;
+    if (length >= 408) {
+      const size_t payload = end - 408;
+      constexpr double kDeg = 57.29577951308232;
+      places.push_back({bigEndianDouble(bytes, payload + 16) * kDeg, bigEndianDouble(bytes, payload + 8) * kDeg,
+                        bigEndianDouble(bytes, payload + 24)});
+    }
+    at = end;
+  }
+  return places;
+}
+
+std::vector<nlohmann::json> linesOf(const std::string& path) {
+  std::vector<nlohmann::json> lines;
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    auto value = nlohmann::json::parse(line, nullptr, false);
+    if (!value.is_discarded()) lines.push_back(std::move(value));
+  }
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("replay: a take-off over UDP drives the picture, no packet lost, position to the millimetre") {
+  const std::string capture = std::string(EYE_TEST_DATA) + "/captures/jsbsim_c1723_takeoff.pcap";
+  const std::string database = carpathiaDatabase();
+  if (database.empty() || !std::filesystem::exists(capture)) {
+    WARN("no " << capture << " or no terrain: this test checks nothing");
+    return;
+  }
+  const std::string stats = testFile("replay.jsonl");
+  std::filesystem::remove(stats);
+  const std::string address = fmt::format("127.0.0.1:{}", freePort());
+  auto flight = std::async(std::launch::async, [&] {
+    return runProgram("eyepoint",
+                      {"--headless", "--terrain", database, "--host", "native-fdm://" + address, "--stats", stats,
+                       "--size", "320x240", "--duration", fmt::format("{}", kSeconds + 6), "--log-level", "error"});
+  });
+  // It listens once the run has begun; its statistics are buffered, so its listening is waited for in /proc.
+  const std::string listening = fmt::format("0100007F:{:04X}", std::stoi(address.substr(address.find(':') + 1)));
+  for (int i = 0; i < 500 && readText("/proc/net/udp").find(listening) == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  REQUIRE(readText("/proc/net/udp").find(listening) != std::string::npos);
+
+  const ProgramRun host = runProgram("eyepoint-host", {"--protocol", "native-fdm", "--to", address, "--track", capture,
+                                                       "--duration", fmt::format("{}", kSeconds)});
+  const ProgramRun drawn = flight.get();
+  INFO(host.out << host.err << drawn.err);
+  REQUIRE(host.exitCode == 0);
+  REQUIRE(drawn.exitCode == 0);
+
+  const std::vector<nlohmann::json> frames = linesOf(stats);
+  REQUIRE(frames.size() > 100);
+  const auto received = frames.back()["host"]["packets"].get<uint64_t>();
+  CHECK(frames.back()["host"]["rejected"].get<uint64_t>() == 0);
+  const std::vector<Place> positions = positionsIn(capture);
+  REQUIRE(positions.size() > 1000);
+  // What the host says it sent, last number before "packets" of its summary.
+  const std::string said = host.out + host.err;
+  INFO("received " << received << " of " << positions.size() << " in the capture");
+  CHECK(said.find(fmt::format("{} packets", received)) != std::string::npos);
+  CHECK(received > 100);
+
+  // Every frame after the first packet stands exactly where one of the packets received says.
+  size_t next = 0, matched = 0, checked = 0;
+  for (const nlohmann::json& frame : frames) {
+    if (frame["host"]["packets"].get<uint64_t>() == 0) continue;
+    ++checked;
+    const auto pose = frame["pose"].get<std::vector<double>>();
+    const Vec at = ecefFromPlace({pose[0], pose[1], pose[2]});
+    size_t i = next;
+    while (i < positions.size() && length(ecefFromPlace(positions[i]) - at) > 1e-3) ++i;
+    if (i == positions.size()) continue;
+    ++matched;
+    next = i;  // packets are taken in order
+  }
+  CHECK(checked > 100);
+  CHECK(matched == checked);
+  CHECK(next + 1 == received);  // the last frame shows the last packet
+}
+
+}  // namespace eye::truth

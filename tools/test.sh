@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Everything that is checked: installs what is missing, builds, lints, runs the sanitizers over the modules that read
+# foreign data or share memory between threads, then every test. The last lines are ctest's summary.
+#   tools/test.sh [options of ctest]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+jobs=$(nproc)
+
+step() { printf '\n== %s (%d s so far)\n' "$1" "$SECONDS"; }
+
+# A preset, the libraries' tests that run under it; each test program is run as a whole.
+sanitize() {
+  local preset=$1 name
+  shift
+  step "$preset: $*"
+  cmake --preset "$preset" >/dev/null
+  cmake --build "build/$preset" --target "${@/#/test_}"
+  for name in "$@"; do "build/$preset/bin/test_$name" --durations no; done
+}
+
+tools/install_dependencies.sh test
+step "build: release"
+cmake --preset release -DEYE_BUILD_TESTS=ON >/dev/null
+cmake --build build/release
+step "lint"
+tools/lint.sh
+
+# A report of a sanitizer ends the program with an error, so it ends this script.
+export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 TSAN_OPTIONS=halt_on_error=1
+sanitize asan base geo terrain bake paging link
+sanitize tsan telemetry paging link
+
+step "every test"
+# Two at a time; those that draw or measure hold a lock and go one by one.
+ctest --test-dir build/release --output-on-failure --parallel "$jobs" "$@"
