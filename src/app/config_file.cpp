@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include <fmt/format.h>
-#define TOML_EXCEPTIONS 0
 #include <toml++/toml.h>
 
 namespace eye {
@@ -40,14 +39,15 @@ Result<ConfigValues> readConfigFile(const std::string& path) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed))
     return fail(ErrorKind::usage, fmt::format("{}: no such configuration file; check --config", path));
-  const toml::parse_result parsed = toml::parse_file(path);
-  if (!parsed) {
-    const toml::parse_error& error = parsed.error();
+  toml::table table;
+  try {
+    table = toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
     return fail(ErrorKind::usage, fmt::format("{}:{}:{}: {}; mend the file's TOML", path, error.source().begin.line,
                                               error.source().begin.column, error.description()));
   }
   ConfigValues values;
-  for (const auto& [key, node] : parsed.table()) {
+  for (const auto& [key, node] : table) {
     const std::string name(key.str());
     std::vector<std::string>& words = values[name];
     const auto take = [&](const toml::node& item) {
@@ -62,8 +62,8 @@ Result<ConfigValues> readConfigFile(const std::string& path) {
       understood = take(node);
     }
     if (!understood)
-      return fail(ErrorKind::usage, fmt::format("{}:{}: {} must be a text, a number, true/false or a list of these", path,
-                                                node.source().begin.line, name));
+      return fail(ErrorKind::usage, fmt::format("{}:{}: {} must be a text, a number, true/false or a list of these",
+                                                path, node.source().begin.line, name));
   }
   return values;
 }

@@ -15,18 +15,18 @@ namespace eye {
 
 struct FrameRecord {
   uint64_t frame = 0;
-  double timeS = 0;              // the frame's clock
+  double timeS = 0;  // the frame's clock
   Pose pose;
-  bool drawn = true;             // false: the last picture still held (--redraw changed)
-  double frameMs = 0;            // start of the frame to its completion; no waiting for the pace
-  double cpuMs = 0;              // of the whole process, every thread
+  bool drawn = true;   // false: the last picture still held (--redraw changed)
+  double frameMs = 0;  // start of the frame to its completion; no waiting for the pace
+  double cpuMs = 0;    // of the whole process, every thread
   double gpuMs = 0;
   std::vector<PassTime> passes;
   uint64_t triangles = 0, vertices = 0, draws = 0;
   SelectionCounts selection;
   PagingCounts paging;
   HostCounts host;
-  double hostAgeMs = -1;         // from the newest packet's arrival to the frame's completion; negative: no packet yet
+  double hostAgeMs = -1;  // from the newest packet's arrival to the frame's completion; negative: no packet yet
 };
 
 }  // namespace eye

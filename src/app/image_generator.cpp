@@ -32,7 +32,8 @@ Pose waitingPose(const DatabaseInfo& info) {
 }
 
 bool operator==(const View& a, const View& b) {
-  return a.eyeEcefM == b.eyeEcefM && a.eyeFromEcef == b.eyeFromEcef && a.widthPx == b.widthPx && a.heightPx == b.heightPx;
+  return a.eyeEcefM == b.eyeEcefM && a.eyeFromEcef == b.eyeFromEcef && a.widthPx == b.widthPx &&
+         a.heightPx == b.heightPx;
 }
 
 }  // namespace
@@ -84,9 +85,10 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   const std::string terrain = embedded ? defaultTerrainPath() : options.terrain;
   std::error_code failed;
   if (embedded && !std::filesystem::exists(terrain, failed))
-    return fail(ErrorKind::notFound, fmt::format("{}: the embedded terrain is not baked yet; run tools/run.sh, or eyepoint-bake "
-                                                 "demo --out {}, or give --terrain FILE",
-                                                 terrain, terrain));
+    return fail(ErrorKind::notFound,
+                fmt::format("{}: the embedded terrain is not baked yet; run tools/run.sh, or eyepoint-bake "
+                            "demo --out {}, or give --terrain FILE",
+                            terrain, terrain));
   const Result<DatabaseReader> database = DatabaseReader::open(terrain);
   if (!database) return tl::unexpected(database.error());
 
@@ -118,17 +120,16 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
 
 View ImageGenerator::currentView(const Pose& pose) const {
   const int width = renderer_->widthPx(), height = renderer_->heightPx();
-  const Frustum frustum =
-      options_.frustumDeg ? offAxisFrustum((*options_.frustumDeg)[0], (*options_.frustumDeg)[1], (*options_.frustumDeg)[2],
-                                           (*options_.frustumDeg)[3], options_.nearM)
-                          : symmetricFrustum(options_.fovDeg, width, height, options_.nearM);
+  const Frustum frustum = options_.frustumDeg
+                              ? offAxisFrustum((*options_.frustumDeg)[0], (*options_.frustumDeg)[1],
+                                               (*options_.frustumDeg)[2], (*options_.frustumDeg)[3], options_.nearM)
+                              : symmetricFrustum(options_.fovDeg, width, height, options_.nearM);
   return makeView(pose, frustum, width, height);
 }
 
 Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
   Lighting lighting;
-  const double julianDay =
-      julianDayFromLocalSolarTime(options_.timeOfDayH, pose_.position.lonDeg, kYear, kMonth, kDay);
+  const double julianDay = julianDayFromLocalSolarTime(options_.timeOfDayH, pose_.position.lonDeg, kYear, kMonth, kDay);
   lighting.sunDirectionEcef = sunDirectionEcef(julianDay);
   lighting.visibilityM = options_.visibilityM.value_or(host.visibilityM.value_or(kDefaultVisibilityM));
   return lighting;
@@ -174,8 +175,13 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   FrameRecord record;
   if (draw) {
     makeDrawList(pager_->cache(), selection_, pager_->info().textureSize, draws_);
-    FrameInput input{.view = view_, .draws = draws_, .lighting = lighting, .background = options_.background,
-                     .readColour = readColour, .readDepth = readDepth, .overlay = {}};
+    FrameInput input{.view = view_,
+                     .draws = draws_,
+                     .lighting = lighting,
+                     .background = options_.background,
+                     .readColour = readColour,
+                     .readDepth = readDepth,
+                     .overlay = {}};
     if (overlay) input.overlay = [this] { overlay_.draw(renderer_->device().name, sources_.description()); };
     const Result<FrameOutput> output = renderer_->drawFrame(input);
     if (!output) return tl::unexpected(output.error());

@@ -13,7 +13,8 @@
 
 int main(int argc, char** argv) {
   const int64_t startedNs = eye::monotonicNs();
-  // A software rasteriser frees and takes megabytes in every frame: keep them instead of giving them back to the system.
+  // A software rasteriser frees and takes megabytes in every frame: keep them instead of giving them back to the
+  // system.
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   mallopt(M_TOP_PAD, 64 << 20);
   std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that dies is an error of its write
@@ -31,7 +32,8 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(log);
   spdlog::set_level(spdlog::level::from_str(parsed.options.logLevel));
 
-  const eye::Result<void> result = parsed.options.listDevices ? eye::listDevices() : eye::run(parsed.options, startedNs);
+  const eye::Result<void> result =
+      parsed.options.listDevices ? eye::printDevices() : eye::run(parsed.options, startedNs);
   if (result) return 0;
   std::fprintf(stderr, "eyepoint: %s\n", result.error().message.c_str());
   return eye::exitStatus(result.error());

@@ -5,8 +5,8 @@
 #include <limits>
 #include <sstream>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "app/config_file.h"
 
@@ -34,8 +34,8 @@ void setSize(Options& options, const std::string& text) {
   const auto numbers = splitNumbers(text, 'x', 2);
   if (!numbers || std::floor((*numbers)[0]) != (*numbers)[0] || std::floor((*numbers)[1]) != (*numbers)[1] ||
       std::min((*numbers)[0], (*numbers)[1]) < 16 || std::max((*numbers)[0], (*numbers)[1]) > kLargestSidePx)
-    throw CLI::ValidationError("--size", fmt::format("'{}' is no size; give WxH from 16x16 to {}x{}, such as 1280x720", text,
-                                                     kLargestSidePx, kLargestSidePx));
+    throw CLI::ValidationError("--size", fmt::format("'{}' is no size; give WxH from 16x16 to {}x{}, such as 1280x720",
+                                                     text, kLargestSidePx, kLargestSidePx));
   options.widthPx = static_cast<int>((*numbers)[0]);
   options.heightPx = static_cast<int>((*numbers)[1]);
 }
@@ -44,9 +44,10 @@ void setFrustum(Options& options, const std::string& text) {
   const auto n = splitNumbers(text, ',', 4);
   if (!n || (*n)[0] >= (*n)[1] || (*n)[2] >= (*n)[3] || std::abs((*n)[0]) >= 89.9 || std::abs((*n)[1]) >= 89.9 ||
       std::abs((*n)[2]) >= 89.9 || std::abs((*n)[3]) >= 89.9)
-    throw CLI::ValidationError("--frustum", fmt::format("'{}' is no frustum; give left,right,bottom,top half-angles in degrees, "
-                                                        "signed, within 89.9, such as -30,30,-23.4,23.4",
-                                                        text));
+    throw CLI::ValidationError("--frustum",
+                               fmt::format("'{}' is no frustum; give left,right,bottom,top half-angles in degrees, "
+                                           "signed, within 89.9, such as -30,30,-23.4,23.4",
+                                           text));
   options.frustumDeg = std::array<double, 4>{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
 }
 
@@ -76,75 +77,118 @@ bool onOff(const std::string& name, const std::string& text) {
 void addTerrainAndHost(CLI::App& app, Options& o) {
   const char* group = "Terrain and aircraft state";
   app.add_option("--terrain", o.terrain, "Terrain database made by eyepoint-bake; default: the embedded demo")
-      ->type_name("FILE")->group(group);
-  app.add_option("--host", o.hosts, "Where aircraft state comes from (may be given again):\n"
-                                    "native-fdm://ADDR:PORT, file://TRACK, demo://, pose://lat,lon,alt,h,p,r")
-      ->type_name("URL")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->group(group);
+      ->type_name("FILE")
+      ->group(group);
+  app.add_option("--host", o.hosts,
+                 "Where aircraft state comes from (may be given again):\n"
+                 "native-fdm://ADDR:PORT, file://TRACK, demo://, pose://lat,lon,alt,h,p,r")
+      ->type_name("URL")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group(group);
   app.add_option("--pose", o.pose, "Holds still: lat,lon,alt,heading,pitch,roll (degrees, metres)")
-      ->type_name("P")->group(group);
+      ->type_name("P")
+      ->group(group);
 }
 
 void addView(CLI::App& app, Options& o) {
   const char* group = "View";
-  app.add_option_function<std::string>("--size", [&o](const std::string& t) { setSize(o, t); }, "Pixels; default 800x600")
-      ->type_name("WxH")->group(group);
+  app.add_option_function<std::string>(
+         "--size", [&o](const std::string& t) { setSize(o, t); }, "Pixels; default 800x600")
+      ->type_name("WxH")
+      ->group(group);
   app.add_option("--fov", o.fovDeg, "Full horizontal angle, degrees; default 60")
-      ->type_name("DEG")->check(CLI::Range(0.1, 170.0))->group(group);
-  app.add_option_function<std::string>("--frustum", [&o](const std::string& t) { setFrustum(o, t); },
-                                       "Off-axis view: left,right,bottom,top half-angles, signed degrees")
-      ->type_name("L,R,B,T")->group(group);
-  app.add_option("--near", o.nearM, "Near plane, metres; default 1")->type_name("M")->check(CLI::Range(0.01, 1000.0))->group(group);
+      ->type_name("DEG")
+      ->check(CLI::Range(0.1, 170.0))
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--frustum", [&o](const std::string& t) { setFrustum(o, t); },
+         "Off-axis view: left,right,bottom,top half-angles, signed degrees")
+      ->type_name("L,R,B,T")
+      ->group(group);
+  app.add_option("--near", o.nearM, "Near plane, metres; default 1")
+      ->type_name("M")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->group(group);
   app.add_flag("--headless", o.headless, "No window; works without a display")->group(group);
   app.add_flag("--fullscreen", o.fullscreen, "The whole monitor (F11 switches)")->group(group);
-  app.add_option("--monitor", o.monitor, "Which monitor, from 0")->type_name("N")->check(CLI::Range(0, 63))->group(group);
-  app.add_option_function<std::string>("--vsync", [&o](const std::string& t) { o.vsync = onOff("--vsync", t); },
-                                       "on (default) or off")
-      ->type_name("on/off")->group(group);
+  app.add_option("--monitor", o.monitor, "Which monitor, from 0")
+      ->type_name("N")
+      ->check(CLI::Range(0, 63))
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--vsync", [&o](const std::string& t) { o.vsync = onOff("--vsync", t); }, "on (default) or off")
+      ->type_name("on/off")
+      ->group(group);
   app.add_flag("--overlay", o.overlay, "Statistics over the picture from the start (F1 switches)")->group(group);
 }
 
 void addRun(CLI::App& app, Options& o) {
   const char* group = "Run";
   app.add_option("--frames", o.frames, "Stop after N frames")->type_name("N")->check(CLI::PositiveNumber)->group(group);
-  app.add_option("--duration", o.durationS, "Stop after S seconds")->type_name("S")->check(CLI::PositiveNumber)->group(group);
-  app.add_option_function<std::string>("--rate", [&o](const std::string& t) { setRate(o, t); },
-                                       "Pace of frames: hertz or max; default 60, max with a fixed pose or --offline")
-      ->type_name("HZ/max")->group(group);
+  app.add_option("--duration", o.durationS, "Stop after S seconds")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--rate", [&o](const std::string& t) { setRate(o, t); },
+         "Pace of frames: hertz or max; default 60, max with a fixed pose or --offline")
+      ->type_name("HZ/max")
+      ->group(group);
   app.add_option_function<std::string>(
          "--redraw", [&o](const std::string& t) { o.redrawAlways = t == "always"; },
          "changed (default): a frame like the last one is not drawn again; always")
-      ->type_name("changed/always")->check(CLI::IsMember({"changed", "always"}))->group(group);
-  app.add_flag("--offline", o.offline, "Deterministic: fixed 60 Hz clock, every frame waits for its terrain")->group(group);
+      ->type_name("changed/always")
+      ->check(CLI::IsMember({"changed", "always"}))
+      ->group(group);
+  app.add_flag("--offline", o.offline, "Deterministic: fixed 60 Hz clock, every frame waits for its terrain")
+      ->group(group);
 }
 
 void addQuality(CLI::App& app, Options& o) {
   const char* group = "Quality and budgets";
   app.add_option("--sse", o.ssePx, "Tolerated screen-space error, pixels; default 1")
-      ->type_name("PX")->check(CLI::Range(0.05, 64.0))->group(group);
+      ->type_name("PX")
+      ->check(CLI::Range(0.05, 64.0))
+      ->group(group);
   app.add_option_function<std::string>(
-         "--culling", [&o](const std::string& t) { o.culling = t == "none" ? CullingScheme::none : CullingScheme::frustum; },
+         "--culling",
+         [&o](const std::string& t) { o.culling = t == "none" ? CullingScheme::none : CullingScheme::frustum; },
          "none, or frustum (default): view frustum and horizon")
-      ->type_name("none/frustum")->check(CLI::IsMember({"none", "frustum"}))->group(group);
+      ->type_name("none/frustum")
+      ->check(CLI::IsMember({"none", "frustum"}))
+      ->group(group);
   app.add_option("--cache-ram", o.cacheRamMiB, "Budget for decoded terrain in memory; default 96")
-      ->type_name("MIB")->check(CLI::Range(8, 1 << 20))->group(group);
+      ->type_name("MIB")
+      ->check(CLI::Range(8, 1 << 20))
+      ->group(group);
   app.add_option("--cache-gpu", o.cacheGpuMiB, "Budget for terrain on the GPU; default 160")
-      ->type_name("MIB")->check(CLI::Range(16, 1 << 20))->group(group);
+      ->type_name("MIB")
+      ->check(CLI::Range(16, 1 << 20))
+      ->group(group);
   app.add_option("--time-of-day", o.timeOfDayH, "Local solar time, hours; default 9")
-      ->type_name("H")->check(CLI::Range(0.0, 24.0))->group(group);
+      ->type_name("H")
+      ->check(CLI::Range(0.0, 24.0))
+      ->group(group);
   app.add_option("--visibility", o.visibilityM, "Meteorological visibility, metres; default the host's, else 60000")
-      ->type_name("M")->check(CLI::Range(10.0, 1.0e6))->group(group);
+      ->type_name("M")
+      ->check(CLI::Range(10.0, 1.0e6))
+      ->group(group);
 }
 
 void addOutputs(CLI::App& app, Options& o) {
   const char* group = "Outputs";
   app.add_option("--screenshot", o.screenshot, "The last frame as a picture")->type_name("FILE.png")->group(group);
   app.add_option("--distance-map", o.distanceMap, "The last frame's slant range in metres, NaN for sky")
-      ->type_name("FILE.tif")->group(group);
+      ->type_name("FILE.tif")
+      ->group(group);
   app.add_option("--record", o.record, "All frames as a film (needs ffmpeg)")->type_name("FILE.mp4")->group(group);
   app.add_option("--frames-dir", o.framesFolder, "All frames as pictures")->type_name("DIR")->group(group);
   app.add_option("--stats", o.stats, "One JSON object a frame")->type_name("FILE.jsonl")->group(group);
   app.add_option("--summary", o.summary, "One JSON object for the run")->type_name("FILE.json")->group(group);
-  app.add_option("--trace", o.trace, "Chrome/Perfetto trace of threads and GPU passes")->type_name("FILE.json")->group(group);
+  app.add_option("--trace", o.trace, "Chrome/Perfetto trace of threads and GPU passes")
+      ->type_name("FILE.json")
+      ->group(group);
 }
 
 void addDiagnosis(CLI::App& app, Options& o) {
@@ -153,10 +197,13 @@ void addDiagnosis(CLI::App& app, Options& o) {
   app.add_option("--device", o.device, "Use the device whose name contains NAME")->type_name("NAME")->group(group);
   app.add_flag("--validate", o.validate, "Vulkan validation on; any message fails the run")->group(group);
   app.add_option("--log-level", o.logLevel, "debug, info (default), warn or error")
-      ->check(CLI::IsMember({"debug", "info", "warn", "error"}))->group(group);
-  app.add_option_function<std::string>("--background", [&o](const std::string& t) { setBackground(o, t); },
-                                       "A flat colour instead of sky and haze: shows holes")
-      ->type_name("R,G,B")->group(group);
+      ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--background", [&o](const std::string& t) { setBackground(o, t); },
+         "A flat colour instead of sky and haze: shows holes")
+      ->type_name("R,G,B")
+      ->group(group);
 }
 
 // What the file says, for each option that the command line left out.
@@ -199,13 +246,14 @@ std::string oneLine(std::string text) {
 std::string defaultTerrainPath() {
   const char* data = std::getenv("XDG_DATA_HOME");
   const char* home = std::getenv("HOME");
-  const std::string folder = data != nullptr && *data != '\0' ? data : std::string(home != nullptr ? home : ".") + "/.local/share";
+  const std::string folder =
+      data != nullptr && *data != '\0' ? data : std::string(home != nullptr ? home : ".") + "/.local/share";
   return folder + "/eyepoint/demo.eyt";
 }
 
 std::string Options::settingsLine() const {
-  return fmt::format("size={}x{} sse={} culling={} cache-ram={} cache-gpu={} offline={} redraw={}", widthPx, heightPx, ssePx,
-                     culling == CullingScheme::none ? "none" : "frustum", cacheRamMiB, cacheGpuMiB, offline,
+  return fmt::format("size={}x{} sse={} culling={} cache-ram={} cache-gpu={} offline={} redraw={}", widthPx, heightPx,
+                     ssePx, culling == CullingScheme::none ? "none" : "frustum", cacheRamMiB, cacheGpuMiB, offline,
                      redrawAlways ? "always" : "changed");
 }
 
@@ -248,9 +296,10 @@ ParsedOptions parseOptions(int argc, const char* const* argv) {
     for (const CLI::Option* option : app.get_options()) known.push_back(option->get_name(false, true));
     std::string word = app.remaining().empty() ? "" : app.remaining().front();
     const std::string nearest = nearestWord(word.substr(0, word.find('=')), known);
-    return refuse(word.empty() ? std::string(error.what())
-                               : fmt::format("'{}' is no option of eyepoint; {}", word,
-                                             nearest.empty() ? "see eyepoint --help" : fmt::format("did you mean {}?", nearest)));
+    return refuse(
+        word.empty() ? std::string(error.what())
+                     : fmt::format("'{}' is no option of eyepoint; {}", word,
+                                   nearest.empty() ? "see eyepoint --help" : fmt::format("did you mean {}?", nearest)));
   } catch (const CLI::Error& error) {
     return refuse(fmt::format("{}; see eyepoint --help", error.what()));
   }

@@ -45,8 +45,8 @@ struct Options {
 
   // Outputs.
   std::string screenshot, distanceMap, record, stats, summary, trace;
-  std::string framesFolder;               // every frame as a PNG
-  std::optional<glm::vec3> background;    // instead of sky and haze
+  std::string framesFolder;             // every frame as a PNG
+  std::optional<glm::vec3> background;  // instead of sky and haze
 
   // Device and diagnosis.
   bool listDevices = false, validate = false, overlay = false;

@@ -29,7 +29,8 @@ void Overlay::draw(const std::string& device, const std::string& source) const {
   ImGui::SetNextWindowPos(ImVec2(8, 8), ImGuiCond_Always);
   ImGui::SetNextWindowBgAlpha(0.72f);
   ImGui::Begin("Eyepoint", nullptr,
-               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoSavedSettings);
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav |
+                   ImGuiWindowFlags_NoSavedSettings);
   ImGui::TextUnformatted(device.c_str());
   ImGui::TextUnformatted(source.c_str());
   const float slowest = *std::max_element(frameMs_.begin(), frameMs_.end());
@@ -42,13 +43,13 @@ void Overlay::draw(const std::string& device, const std::string& source) const {
   line("triangles", "%.0f in %.0f draws", static_cast<double>(r.triangles), static_cast<double>(r.draws));
   line("chunks", "%.0f drawn, %.0f off screen, %.0f below horizon", r.selection.drawn, r.selection.frustumCulled,
        r.selection.horizonCulled);
-  line("paging", "%.0f resident, %.0f missing, %.1f MiB read", static_cast<double>(r.paging.resident), r.selection.missing,
-       static_cast<double>(r.paging.bytesRead) / kMiB);
+  line("paging", "%.0f resident, %.0f missing, %.1f MiB read", static_cast<double>(r.paging.resident),
+       r.selection.missing, static_cast<double>(r.paging.bytesRead) / kMiB);
   line("memory", "GPU %.0f MiB, RAM %.0f MiB", static_cast<double>(r.paging.gpuBytes) / kMiB,
        static_cast<double>(r.paging.ramBytes) / kMiB);
   if (r.hostAgeMs >= 0)
-    line("host", "%.0f packets, %.0f rejected, age %.1f ms", static_cast<double>(r.host.packets), static_cast<double>(r.host.rejected),
-         r.hostAgeMs);
+    line("host", "%.0f packets, %.0f rejected, age %.1f ms", static_cast<double>(r.host.packets),
+         static_cast<double>(r.host.rejected), r.hostAgeMs);
   ImGui::TextDisabled("F1 statistics  F11 full screen  Esc quit");
   ImGui::End();
 }

@@ -35,14 +35,19 @@ struct Ffmpeg {
 
 Result<Ffmpeg> startFfmpeg(const RecorderOptions& options) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return fail(ErrorKind::io, fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    return fail(ErrorKind::io, fmt::format("no pipe to ffmpeg: {}", std::strerror(errno)));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-  const std::string size = fmt::format("{}x{}", options.widthPx, options.heightPx), rate = fmt::format("{}", options.rateHz);
-  std::vector<std::string> words{"ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-video_size", size,
-                                 "-framerate", rate, "-i", "-", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p",
-                                 "-preset", "veryfast", "-movflags", "+faststart", options.film};
+  const std::string size = fmt::format("{}x{}", options.widthPx, options.heightPx),
+                    rate = fmt::format("{}", options.rateHz);
+  std::vector<std::string> words{"ffmpeg",      "-y",         "-loglevel",  "error",
+                                 "-f",          "rawvideo",   "-pix_fmt",   "rgba",
+                                 "-video_size", size,         "-framerate", rate,
+                                 "-i",          "-",          "-vf",        "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                 "-pix_fmt",    "yuv420p",    "-preset",    "veryfast",
+                                 "-movflags",   "+faststart", options.film};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -52,9 +57,10 @@ Result<Ffmpeg> startFfmpeg(const RecorderOptions& options) {
   close(ends[0]);
   if (failed != 0) {
     close(ends[1]);
-    return fail(ErrorKind::unsupported, fmt::format("{}: recording needs ffmpeg ({}); install it (apt install ffmpeg) or use "
-                                                    "--frames-dir",
-                                                    options.film, std::strerror(failed)));
+    return fail(ErrorKind::unsupported,
+                fmt::format("{}: recording needs ffmpeg ({}); install it (apt install ffmpeg) or use "
+                            "--frames-dir",
+                            options.film, std::strerror(failed)));
   }
   ffmpeg.pipe = ends[1];
   return ffmpeg;
@@ -119,7 +125,9 @@ void Recorder::Impl::run() {
 
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-Recorder::~Recorder() { (void)finish(); }
+Recorder::~Recorder() {
+  (void)finish();
+}
 
 Result<std::unique_ptr<Recorder>> Recorder::create(const RecorderOptions& options) {
   auto impl = std::make_unique<Impl>();
@@ -127,7 +135,8 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const RecorderOptions& option
   if (!options.folder.empty()) {
     std::error_code failed;
     std::filesystem::create_directories(options.folder, failed);
-    if (failed) return fail(ErrorKind::io, fmt::format("{}: cannot make the folder: {}", options.folder, failed.message()));
+    if (failed)
+      return fail(ErrorKind::io, fmt::format("{}: cannot make the folder: {}", options.folder, failed.message()));
   }
   if (!options.film.empty()) {
     Result<Ffmpeg> started = startFfmpeg(options);
@@ -141,7 +150,8 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const RecorderOptions& option
 
 Result<void> Recorder::add(std::span<const uint8_t> rgba, int widthPx, int heightPx) {
   if (widthPx != impl_->options.widthPx || heightPx != impl_->options.heightPx)
-    return fail(ErrorKind::unsupported, "the window changed its size while recording; record with --headless, or leave its size");
+    return fail(ErrorKind::unsupported,
+                "the window changed its size while recording; record with --headless, or leave its size");
   std::unique_lock lock(impl_->mutex);
   impl_->changed.wait(lock, [&] { return impl_->error || impl_->queue.size() < kMaxQueuedFrames; });
   if (impl_->error) return tl::unexpected(*impl_->error);

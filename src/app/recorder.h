@@ -12,8 +12,8 @@
 namespace eye {
 
 struct RecorderOptions {
-  std::string film;     // an .mp4 (or whatever ffmpeg makes of the name); empty: none
-  std::string folder;   // for PNGs, made where it is missing; empty: none
+  std::string film;    // an .mp4 (or whatever ffmpeg makes of the name); empty: none
+  std::string folder;  // for PNGs, made where it is missing; empty: none
   int widthPx = 0, heightPx = 0;
   double rateHz = 60;
 };

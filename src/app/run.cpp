@@ -22,7 +22,9 @@ namespace {
 constexpr double kOfflineRateHz = 60;
 
 volatile std::sig_atomic_t stopRequested = 0;
-void requestStop(int) { stopRequested = 1; }
+void requestStop(int) {
+  stopRequested = 1;
+}
 
 // What ends the run, resolved from options and source.
 struct Limits {
@@ -71,7 +73,8 @@ std::vector<float> slantRange(std::span<const float> depth, const View& view) {
 
 Result<void> writeLastFrame(const Options& options, const ImageGenerator& generator) {
   if (!options.screenshot.empty()) {
-    const Result<void> written = writePng(options.screenshot, generator.picture(), generator.widthPx(), generator.heightPx());
+    const Result<void> written =
+        writePng(options.screenshot, generator.picture(), generator.widthPx(), generator.heightPx());
     if (!written) return written;
   }
   if (!options.distanceMap.empty()) {
@@ -92,13 +95,13 @@ Result<std::unique_ptr<Recorder>> startRecorder(const Options& options, ImageGen
 
 void reportRun(const RunSummary& summary, double startupMs) {
   const TimeSummary times = summarize(summary.frameTimesMs());
-  spdlog::info("{} frames, {} drawn; frame ms median {:.2f}, p99 {:.2f}, max {:.2f}; first frame after {:.0f} ms", summary.frames(),
-               summary.frameTimesMs().size(), times.median, times.p99, times.max, startupMs);
+  spdlog::info("{} frames, {} drawn; frame ms median {:.2f}, p99 {:.2f}, max {:.2f}; first frame after {:.0f} ms",
+               summary.frames(), summary.frameTimesMs().size(), times.median, times.p99, times.max, startupMs);
 }
 
 }  // namespace
 
-Result<void> listDevices() {
+Result<void> printDevices() {
   const Result<std::vector<DeviceDescription>> devices = Renderer::listDevices();
   if (!devices) return tl::unexpected(devices.error());
   for (const DeviceDescription& device : *devices)
@@ -131,7 +134,8 @@ Result<void> run(const Options& given, int64_t startedNs) {
   if (!created) return tl::unexpected(created.error());
   ImageGenerator& generator = **created;
 
-  const double defaultRateHz = generator.sourceIsFixed() || options.offline ? std::numeric_limits<double>::infinity() : 60.0;
+  const double defaultRateHz =
+      generator.sourceIsFixed() || options.offline ? std::numeric_limits<double>::infinity() : 60.0;
   const double rateHz = options.rateHz.value_or(defaultRateHz);
   Result<std::unique_ptr<Recorder>> recorder = startRecorder(options, generator, rateHz);
   if (!recorder) return tl::unexpected(recorder.error());
@@ -159,7 +163,8 @@ Result<void> run(const Options& given, int64_t startedNs) {
     if (stats)
       if (const Result<void> written = stats->write(*record); !written) return written;
     if (*recorder)
-      if (const Result<void> added = (*recorder)->add(generator.picture(), generator.widthPx(), generator.heightPx()); !added)
+      if (const Result<void> added = (*recorder)->add(generator.picture(), generator.widthPx(), generator.heightPx());
+          !added)
         return added;
     if (last || stopRequested != 0 || (limits.endWithSource && generator.sourceFinished())) break;
     if (!options.headless && !generator.renderer().pollWindow()) break;

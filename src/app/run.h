@@ -6,7 +6,7 @@
 
 namespace eye {
 
-Result<void> listDevices();
+Result<void> printDevices();
 // `startedNs`: monotonicNs() when the program began, for startup_ms.
 Result<void> run(const Options& options, int64_t startedNs);
 

@@ -32,8 +32,8 @@ Json jsonOf(const FrameRecord& r) {
   return Json{{"frame", r.frame},
               {"time_s", r.timeS},
               {"pose",
-               {r.pose.position.latDeg, r.pose.position.lonDeg, r.pose.position.altM, r.pose.headingDeg, r.pose.pitchDeg,
-                r.pose.rollDeg}},
+               {r.pose.position.latDeg, r.pose.position.lonDeg, r.pose.position.altM, r.pose.headingDeg,
+                r.pose.pitchDeg, r.pose.rollDeg}},
               {"drawn", r.drawn},
               {"frame_ms", r.frameMs},
               {"cpu_ms", r.cpuMs},
@@ -126,21 +126,22 @@ Result<void> RunSummary::write(const std::string& path, const std::string& devic
                                const std::string& settings) const {
   const TimeSummary times = summarize(frameMs_);
   const double drawn = std::max<double>(1, static_cast<double>(frameMs_.size()));
-  const Json json{{"frames", frames_},
-                  {"frames_drawn", frameMs_.size()},
-                  {"frame_ms",
-                   {{"mean", times.mean}, {"median", times.median}, {"p95", times.p95}, {"p99", times.p99}, {"max", times.max}}},
-                  {"fps", times.mean > 0 ? 1000.0 / times.mean : 0.0},
-                  {"cpu_ms_mean", cpuMs_ / drawn},
-                  {"over_budget_frames", overBudget_},
-                  {"triangles_mean", triangles_ / drawn},
-                  {"vertices_mean", vertices_ / drawn},
-                  {"missing_chunk_frames", missingChunkFrames_},
-                  {"bytes_read", bytesRead_},
-                  {"peak_rss_bytes", peakRssBytes()},
-                  {"device", device},
-                  {"startup_ms", startupMs},
-                  {"settings", settings}};
+  const Json json{
+      {"frames", frames_},
+      {"frames_drawn", frameMs_.size()},
+      {"frame_ms",
+       {{"mean", times.mean}, {"median", times.median}, {"p95", times.p95}, {"p99", times.p99}, {"max", times.max}}},
+      {"fps", times.mean > 0 ? 1000.0 / times.mean : 0.0},
+      {"cpu_ms_mean", cpuMs_ / drawn},
+      {"over_budget_frames", overBudget_},
+      {"triangles_mean", triangles_ / drawn},
+      {"vertices_mean", vertices_ / drawn},
+      {"missing_chunk_frames", missingChunkFrames_},
+      {"bytes_read", bytesRead_},
+      {"peak_rss_bytes", peakRssBytes()},
+      {"device", device},
+      {"startup_ms", startupMs},
+      {"settings", settings}};
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (file == nullptr) return tl::unexpected(writeError(path));
   const std::string text = json.dump(2) + "\n";

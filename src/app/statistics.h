@@ -37,7 +37,8 @@ class RunSummary {
   void add(const FrameRecord& record);
   uint64_t frames() const { return frames_; }
   const std::vector<double>& frameTimesMs() const { return frameMs_; }
-  Result<void> write(const std::string& path, const std::string& device, double startupMs, const std::string& settings) const;
+  Result<void> write(const std::string& path, const std::string& device, double startupMs,
+                     const std::string& settings) const;
 
  private:
   std::vector<double> frameMs_;

@@ -20,7 +20,8 @@ ParsedOptions parse(std::vector<const char*> words) {
 }
 
 struct TomlFile {
-  std::string path = (std::filesystem::temp_directory_path() / ("eyepoint_options_" + std::to_string(getpid()) + ".toml")).string();
+  std::string path =
+      (std::filesystem::temp_directory_path() / ("eyepoint_options_" + std::to_string(getpid()) + ".toml")).string();
   explicit TomlFile(const std::string& text) { std::ofstream(path) << text; }
   ~TomlFile() { std::filesystem::remove(path); }
 };
@@ -28,8 +29,9 @@ struct TomlFile {
 }  // namespace
 
 TEST_CASE("the command line sets what it says") {
-  const ParsedOptions parsed = parse({"--size", "1280x720", "--fov", "75", "--frustum=-30,20,-10,15", "--rate", "max", "--vsync",
-                                      "off", "--sse", "0.5", "--culling", "none", "--frames", "10", "--pose", "1,2,3,4,5,6"});
+  const ParsedOptions parsed =
+      parse({"--size", "1280x720", "--fov", "75", "--frustum=-30,20,-10,15", "--rate", "max", "--vsync", "off", "--sse",
+             "0.5", "--culling", "none", "--frames", "10", "--pose", "1,2,3,4,5,6"});
   REQUIRE_FALSE(parsed.exitStatus);
   const Options& o = parsed.options;
   CHECK(o.widthPx == 1280);
@@ -94,7 +96,8 @@ TEST_CASE("help teaches and version tells") {
 }
 
 TEST_CASE("the configuration file gives what the command line leaves out") {
-  const TomlFile file("size = \"640x480\"\nsse = 2\nheadless = true\nhost = [\"demo://\", \"native-fdm://:5550\"]\nvsync = \"off\"\n");
+  const TomlFile file(
+      "size = \"640x480\"\nsse = 2\nheadless = true\nhost = [\"demo://\", \"native-fdm://:5550\"]\nvsync = \"off\"\n");
   const ParsedOptions parsed = parse({"--config", file.path.c_str(), "--sse", "4"});
   INFO(parsed.text);
   REQUIRE_FALSE(parsed.exitStatus);

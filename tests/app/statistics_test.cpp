@@ -4,8 +4,8 @@
 #include <fstream>
 #include <limits>
 
-#include <nlohmann/json.hpp>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "app/statistics.h"
 
@@ -52,12 +52,14 @@ TEST_CASE("a line of statistics has every key") {
   }
   std::ifstream in(path);
   const auto json = nlohmann::json::parse(in);
-  for (const char* key : {"frame", "time_s", "pose", "frame_ms", "cpu_ms", "gpu_ms", "pass_ms", "triangles", "vertices", "draws",
-                          "chunks", "clusters", "depth_map", "membership", "paging", "prediction", "host"})
+  for (const char* key : {"frame", "time_s", "pose", "frame_ms", "cpu_ms", "gpu_ms", "pass_ms", "triangles", "vertices",
+                          "draws", "chunks", "clusters", "depth_map", "membership", "paging", "prediction", "host"})
     CHECK(json.contains(key));
-  for (const char* key : {"considered", "frustum_culled", "horizon_culled", "backface_culled", "occlusion_culled", "drawn"})
+  for (const char* key :
+       {"considered", "frustum_culled", "horizon_culled", "backface_culled", "occlusion_culled", "drawn"})
     CHECK(json["chunks"].contains(key));
-  for (const char* key : {"requested", "loaded", "evicted", "resident", "ram_bytes", "gpu_bytes", "missing", "bytes_read"})
+  for (const char* key :
+       {"requested", "loaded", "evicted", "resident", "ram_bytes", "gpu_bytes", "missing", "bytes_read"})
     CHECK(json["paging"].contains(key));
   for (const char* key : {"packets", "rejected", "lost", "age_ms"}) CHECK(json["host"].contains(key));
   CHECK(json["frame_ms"] == 7.25);
@@ -83,12 +85,14 @@ TEST_CASE("the summary counts drawn frames alone and those over 1000/60 ms") {
   CHECK(json["fps"].get<double>() == Approx(1000.0 / ((10 + 16.6 + 16.7) / 3)));
   CHECK(json["startup_ms"] == 321);
   CHECK(json["peak_rss_bytes"].get<uint64_t>() > 1000000);
-  for (const char* key : {"vertices_mean", "missing_chunk_frames", "bytes_read", "device", "settings"}) CHECK(json.contains(key));
+  for (const char* key : {"vertices_mean", "missing_chunk_frames", "bytes_read", "device", "settings"})
+    CHECK(json.contains(key));
   std::filesystem::remove(path);
 }
 
 TEST_CASE("outputs that cannot be written are errors that name the file") {
-  CHECK(StatisticsFile::create("/nonexistent/a.jsonl").error().message.find("/nonexistent/a.jsonl") != std::string::npos);
+  CHECK(StatisticsFile::create("/nonexistent/a.jsonl").error().message.find("/nonexistent/a.jsonl") !=
+        std::string::npos);
   CHECK(RunSummary().write("/nonexistent/b.json", "", 0, "").error().message.find("b.json") != std::string::npos);
   if (std::filesystem::exists("/dev/full")) {
     auto file = StatisticsFile::create("/dev/full");
