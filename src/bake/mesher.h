@@ -13,8 +13,8 @@ struct MeshedTile {
 
 // `toleranceM` is the level's, so that two neighbours simplify their common edge alike: each edge unit (a side, or half
 // of a side where the columns double across it) is a function of the surface, the level and the tolerance alone.
-// meta.geometricErrorM is the true maximum over the tile, rounding of positions included; it is at most toleranceM unless
-// the tile runs out of 16-bit vertices.
+// meta.geometricErrorM is the true maximum over the tile, rounding of positions included; it is at most toleranceM
+// unless the tile runs out of 16-bit vertices.
 MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM);
 
 }  // namespace eye
