@@ -2,7 +2,10 @@
 // damaged or another driver's is ignored, and one that cannot be written is not missed.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "gpu/device.h"
 

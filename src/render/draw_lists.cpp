@@ -1,5 +1,6 @@
 #include "render/draw_lists.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "render/frame_data.h"

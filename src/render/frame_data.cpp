@@ -1,5 +1,6 @@
 #include "render/frame_data.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace eye {

@@ -1,6 +1,9 @@
 // Whole pictures: no NaN, no validation message, from below the sea to far in space.
 #include <catch2/catch.hpp>
 
+#include <fmt/format.h>
+#include <imgui.h>
+
 #include <fstream>
 
 #include "render/scene.h"
@@ -36,4 +39,153 @@ TEST_CASE("mountains under a sky, validation clean") {
   CHECK(renderer->validationMessages() == 0);
   keepPicture(*frame, "mountains");
   for (const PassTime& pass : frame->passes) INFO(pass.name << " " << pass.ms);
+}
+
+TEST_CASE("the sun's height sets the light") {
+  const auto renderer = makeRenderer({});
+  if (!renderer) return;
+  const Pose pose{{49.0 - 0.2, 20.0, 3000}, 0, -8, 0};
+  const std::vector<ChunkDraw> draws = mountains(*renderer, 13, ecefFromGeodetic(pose.position));
+  const auto looked = [&](double elevationDeg, double visibilityM, const std::string& name) {
+    FrameInput input = lookFrom(pose, 800, 600);
+    input.draws = draws;
+    const double elevation = radFromDeg(elevationDeg), azimuth = radFromDeg(20);
+    const Vec3d sunEnu(std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth),
+                       std::sin(elevation));
+    input.lighting.sunDirectionEcef = ecefFromEnu(49.0, 20.0) * sunEnu;
+    input.lighting.visibilityM = visibilityM;
+    const auto frame = renderer->drawFrame(input);
+    REQUIRE(frame.has_value());
+    keepPicture(*frame, name);
+    std::array<double, 4> mean{};  // red and blue of the upper sky, red and blue of the ground
+    for (size_t i = 0; i < 800 * 60; ++i) {
+      const size_t top = 4 * i, bottom = frame->rgba.size() - 4 * (i + 1);
+      mean[0] += frame->rgba[top] / 48000.0;
+      mean[1] += frame->rgba[top + 2] / 48000.0;
+      mean[2] += frame->rgba[bottom] / 48000.0;
+      mean[3] += frame->rgba[bottom + 2] / 48000.0;
+    }
+    return mean;
+  };
+  const auto noon = looked(50, 50000, "noon");
+  const auto sunset = looked(2, 50000, "sunset");
+  const auto night = looked(-30, 50000, "night");
+  const auto fog = looked(50, 800, "fog");
+  CHECK(noon[1] > 1.5 * noon[0]);                    // a blue sky
+  CHECK(sunset[0] / sunset[1] > noon[0] / noon[1]);  // a warmer one
+  CHECK(night[1] < 40);                              // a dark one
+  CHECK(night[2] > 4);                               // but the ground is not quite black
+  CHECK(noon[2] > 4 * night[2]);
+  CHECK(std::abs(fog[0] - fog[2]) < 25);  // in fog, ground and sky are one
+}
+
+TEST_CASE("pictures from under the sea to far in space have no holes and no sparks") {
+  RendererOptions options;
+  options.widthPx = 320;
+  options.heightPx = 240;
+  options.validate = true;
+  const auto renderer = makeRenderer(options);
+  if (!renderer) return;
+  std::vector<ChunkDraw> draws;
+  for (int south = -88; south < 88; south += 22) {
+    for (int west = -180; west < 180; west += 30) {
+      const Patch patch{double(south), double(west), double(south + 22), double(west + 30), 24, 128};
+      const auto seaLevel = [](double, double) { return 0.0; };
+      const auto colour = static_cast<uint8_t>(80 + (south + west) % 40);
+      draws.push_back(addChunk(*renderer, makeChunk(patch, seaLevel, flatTexture(128, colour, 110, 70))));
+      draws.back().texelM = 20000;
+    }
+  }
+  for (const double altM : {-400.0, 2.0, 1000.0, 12000.0, 59999.0, 60001.0, 400e3, 3000e3, 62763e3}) {
+    const double fovDeg = altM > 2e7 ? 15 : 60;
+    const double pitchDeg =
+        altM > 1e6 ? -90 : -degFromRad(std::acos(kSemiMajorM / (kSemiMajorM + std::max(altM, 0.0))));
+    FrameInput input = lookFrom({{20, 30, altM}, 0, pitchDeg, 0}, 320, 240, fovDeg);
+    input.draws = draws;
+    const auto frame = renderer->drawFrame(input);
+    REQUIRE(frame.has_value());
+    keepPicture(*frame, fmt::format("height_{:.0f}", altM));
+    // A NaN is written as black: no black pixel between two that are not, left and right of it.
+    size_t sparks = 0;
+    for (size_t i = 4; i + 8 < frame->rgba.size(); i += 4) {
+      const auto sum = [&](size_t at) { return frame->rgba[at] + frame->rgba[at + 1] + frame->rgba[at + 2]; };
+      sparks += sum(i) < 6 && sum(i - 4) > 60 && sum(i + 4) > 60;
+    }
+    INFO(altM << " m");
+    CHECK(sparks == 0);
+    if (altM > 2e7) CHECK(frame->rgba[0] + frame->rgba[1] + frame->rgba[2] < 12);  // space is black
+    if (altM < 20000) CHECK(frame->rgba[2] > 60);
+  }
+  CHECK(renderer->validationMessages() == 0);
+}
+
+TEST_CASE("neither seams nor far mip levels show where textures meet") {
+  RendererOptions options;
+  options.widthPx = 320;
+  options.heightPx = 240;
+  const auto renderer = makeRenderer(options);
+  if (!renderer) return;
+  // Green in the levels that this view needs, red in the coarse ones.
+  std::vector<uint8_t> texels = flatTexture(128, 60, 120, 60);
+  const size_t fine = (128 * 128 + 64 * 64 + 32 * 32) * 4;
+  for (size_t i = fine; i < texels.size(); i += 4) texels[i] = 255;
+  std::vector<ChunkDraw> draws;
+  for (int column = 0; column < 4; ++column) {
+    const double west = 20 + 0.01 * column;
+    draws.push_back(
+        addChunk(*renderer, makeChunk(
+                                {49, west, 49.01, west + 0.01}, [](double, double) { return 500.0; }, texels)));
+  }
+  FrameInput input = lookFrom({{49.005, 20.02, 1500}, 30, -88, 0}, 320, 240, 40);
+  input.draws = draws;
+  input.background = glm::vec3(0);
+  const auto frame = renderer->drawFrame(input);
+  REQUIRE(frame.has_value());
+  keepPicture(*frame, "seams");
+  const uint8_t* middle = &frame->rgba[(120 * 320 + 160) * 4];
+  size_t ground = 0, odd = 0;
+  for (size_t i = 0; i < frame->rgba.size(); i += 4) {
+    if (frame->depth[i / 4] <= 0) continue;
+    ++ground;
+    for (size_t c = 0; c < 3; ++c) odd += std::abs(frame->rgba[i + c] - middle[c]) > 3;
+  }
+  CHECK(ground > 30000);
+  CHECK(odd == 0);
+  CHECK(middle[1] > middle[0] + 20);
+}
+
+TEST_CASE("the overlay shows off-screen") {
+  RendererOptions options;
+  options.widthPx = 320;
+  options.heightPx = 240;
+  options.validate = true;
+  const auto renderer = makeRenderer(options);
+  if (!renderer) return;
+  FrameInput input = lookFrom({{49, 20, 3000}, 0, 20, 0}, 320, 240);
+  const auto plain = renderer->drawFrame(input);
+  REQUIRE(plain.has_value());
+  const std::vector<uint8_t> before(plain->rgba.begin(), plain->rgba.end());
+  const auto again = renderer->drawFrame(input);
+  REQUIRE(again.has_value());
+  CHECK(std::equal(before.begin(), before.end(), again->rgba.begin()));  // a still eye sees a still picture
+  bool built = false;
+  input.overlay = [&built] {
+    ImGui::SetNextWindowPos({10, 10});
+    ImGui::Begin("statistics");
+    ImGui::TextUnformatted("16.7 ms");
+    ImGui::End();
+    built = true;
+  };
+  REQUIRE(renderer->drawFrame(input).has_value());  // windows fade in: the first frame only measures them
+  const auto shown = renderer->drawFrame(input);
+  REQUIRE(shown.has_value());
+  keepPicture(*shown, "overlay");
+  CHECK(built);
+  size_t changed = 0;
+  for (size_t i = 0; i < before.size(); i += 4) changed += std::abs(before[i + 2] - shown->rgba[i + 2]) > 8;
+  CHECK(changed > 500);
+  CHECK(changed < 320 * 240 / 2);
+  CHECK(std::any_of(shown->passes.begin(), shown->passes.end(),
+                    [](const PassTime& p) { return std::string(p.name) == "overlay"; }));
+  CHECK(renderer->validationMessages() == 0);
 }

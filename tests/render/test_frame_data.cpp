@@ -1,0 +1,65 @@
+// What the shaders are told, and the file that pipelines are kept in. No device needed.
+#include <catch2/catch.hpp>
+
+#include "gpu/pipeline_cache.h"
+#include "render/frame_data.h"
+#include "render/scene.h"
+
+using namespace eye;
+using namespace eye::test;
+
+TEST_CASE("two chunks of one level give the same integers for a point that they share") {
+  const Vec3d eyeEcefM = ecefFromGeodetic({49.1, 20.2, 812.345678});
+  ChunkDraw a, b;
+  a.stepM = b.stepM = 0.0625;
+  const LatticePoint shared = latticeFromEcef(ecefFromGeodetic({49.11, 20.21, 700}), a.stepM);
+  a.originLattice = shared - LatticePoint(1234, -77, 30000);
+  b.originLattice = shared + LatticePoint(-31000, 5, -123);
+  const shader::DrawData first = drawData(a, eyeEcefM, 128), second = drawData(b, eyeEcefM, 128);
+  CHECK(first.originMinusEyeCell + glm::ivec3(1234, -77, 30000) ==
+        second.originMinusEyeCell + glm::ivec3(31000, -5, 123));
+  CHECK(first.eyeFractionM == second.eyeFractionM);
+  // And the shader's sum, in floats, is the true position to a few micrometres at 1.3 km.
+  const glm::vec3 seen =
+      glm::vec3(first.originMinusEyeCell + glm::ivec3(1234, -77, 30000)) * first.stepM - first.eyeFractionM;
+  CHECK(glm::distance(Vec3d(seen), ecefFromLattice(shared, a.stepM) - eyeEcefM) < 2e-4);
+}
+
+TEST_CASE("a chunk of the finest lattice seen from the Moon's distance does not overflow") {
+  ChunkDraw draw;
+  draw.stepM = 1.0 / 1024;
+  draw.originLattice = latticeFromEcef(ecefFromGeodetic({0, 0, 0}), draw.stepM);
+  const Vec3d eyeEcefM = ecefFromGeodetic({10, 20, 384e6});
+  const shader::DrawData data = drawData(draw, eyeEcefM, 128);
+  const Vec3d seen(glm::vec3(data.originMinusEyeCell) * data.stepM - data.eyeFractionM);
+  const Vec3d truth = ecefFromGeodetic({0, 0, 0}) - eyeEcefM;
+  CHECK(glm::distance(seen, truth) / glm::length(truth) < 1e-6);
+}
+
+TEST_CASE("clip space: corners of the frustum, depth near over z") {
+  FrameInput input;
+  const Frustum frustum = offAxisFrustum(-10, 40, -20, 30, 2);
+  input.view = makeView({{30, 40, 5000}, 70, -10, 25}, frustum, 500, 500);
+  const shader::FrameData frame = frameData(input, 128);
+  const auto ndc = [&](const Vec3d& eye) {
+    const glm::vec4 clip = frame.clipFromEcef * glm::vec4(glm::vec3(glm::transpose(input.view.eyeFromEcef) * eye), 1);
+    return glm::vec3(clip) / clip.w;
+  };
+  const double z = 1000;
+  const glm::vec3 leftTop = ndc({frustum.tanLeft * z, -frustum.tanTop * z, z});
+  const glm::vec3 rightBottom = ndc({frustum.tanRight * z, -frustum.tanBottom * z, z});
+  CHECK(glm::distance(leftTop, glm::vec3(-1, -1, 0.002f)) < 1e-5f);
+  CHECK(glm::distance(rightBottom, glm::vec3(1, 1, 0.002f)) < 1e-5f);
+}
+
+TEST_CASE("a damaged pipeline cache is ignored") {
+  const std::vector<uint8_t> driverBytes{1, 2, 3, 4, 5};
+  std::string file = packPipelineCache(driverBytes);
+  CHECK(unpackPipelineCache(file) == driverBytes);
+  for (size_t i = 0; i < file.size(); ++i) {
+    std::string damaged = file;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
+    CHECK_FALSE(unpackPipelineCache(damaged).has_value());
+    CHECK_FALSE(unpackPipelineCache(file.substr(0, i)).has_value());
+  }
+}
