@@ -8,7 +8,7 @@ build_and_fly=(
   ccache cmake g++ ninja-build pkg-config
   glslang-tools libvulkan-dev mesa-vulkan-drivers spirv-tools
   catch2 libcli11-dev libeigen3-dev libexpected-dev libfmt-dev libgdal-dev libgeographiclib-dev libglfw3-dev libglm-dev
-  libimgui-dev libmeshoptimizer-dev libspdlog-dev libsqlite3-dev libtomlplusplus-dev libzstd-dev nlohmann-json3-dev
+  libimgui-dev libmeshoptimizer-dev libspdlog-dev libsqlite3-dev libtomlplusplus-dev libzstd-dev nlohmann-json3-dev zlib1g-dev
   ffmpeg # films of flights; eyepoint flies without it
 )
 tests_only=(
