@@ -97,7 +97,7 @@ TEST_CASE("IGC: fixes, hemispheres, midnight, GNSS altitude where it is") {
 
 TEST_CASE("IGC: several days in one file follow their dates") {
   const std::string day = "B1000003712345N00812345EA0010000100\nB1000013712345N00812345EA0010000100\n";
-  const auto track = parseIgcTrack("HFDTEDATE:010314,02\n" + day + "HFDTE280214\n" + day + "HFDTE000000\n" + day);
+  const auto track = parseIgcTrack(fmt::format("HFDTEDATE:010314,02\n{0}HFDTE280214\n{0}HFDTE000000\n{0}", day));
   REQUIRE(track);
   CHECK(track->samples().size() == 4);
   CHECK(track->durationS() == 86401);
