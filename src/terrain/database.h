@@ -19,10 +19,10 @@ inline constexpr int kSchemaVersion = 1;
 struct DatabaseInfo {
   int schemaVersion = kSchemaVersion;
   int maxLevel = 0;
-  double finestErrorM = 0;     // the tolerance of the finest level; a level's tolerance doubles with each level above
-  int textureSize = 0;         // texels along a chunk's edge, a power of two in 16..2048
-  TileBounds dataBounds{};     // where the sources have data
-  std::string description;     // sources and settings, for `info` and to refuse a --resume with others
+  double finestErrorM = 0;  // the tolerance of the finest level; a level's tolerance doubles with each level above
+  int textureSize = 0;      // texels along a chunk's edge, a power of two in 16..2048
+  TileBounds dataBounds{};  // where the sources have data
+  std::string description;  // sources and settings, for `info` and to refuse a --resume with others
   bool complete = false;
 };
 
@@ -32,8 +32,8 @@ struct StoredChunk {
   Blob imagery;  // empty where meta.hasImagery is false
 };
 
-// Thread: any one at a time. Every write is inside a transaction: kill -9 loses at most the open one. A write that fails
-// (a full disk, say) rolls the whole transaction back, and what follows in it fails too, up to begin().
+// Thread: any one at a time. Every write is inside a transaction: kill -9 loses at most the open one. A write that
+// fails (a full disk, say) rolls the whole transaction back, and what follows in it fails too, up to begin().
 class DatabaseWriter {
  public:
   // Fails where the file exists, unless it is opened for resuming, which checks that info's settings are the same.
@@ -71,7 +71,8 @@ class DatabaseReader {
 
   const DatabaseInfo& info() const;
   const std::string& path() const;
-  // notFound where the tile is not in the file, badData (with the tile's code and what to do) where its bytes are damaged.
+  // notFound where the tile is not in the file, badData (with the tile's code and what to do) where its bytes are
+  // damaged.
   Result<StoredChunk> read(const TileKey& key) const;
   Result<ChunkMeta> readMeta(const TileKey& key) const;
   // Bytes of blobs read so far.
