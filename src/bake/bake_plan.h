@@ -9,10 +9,11 @@
 
 namespace eye {
 
-// A leaf spans about so many posts of its source: with a tolerance of 0.25 m at 3 arc-seconds some 100 triangles.
+// A leaf spans about so many posts of its source: with a tolerance of 0.5 m at 3 arc-seconds some 100 triangles in
+// hills and 500 in the steepest mountains.
 inline constexpr int kLeafPosts = 8;
 // The finest tolerance for 3-arc-second posts and finer ones; coarser posts get proportionally more.
-inline constexpr double kFinestErrorM = 0.25;
+inline constexpr double kFinestErrorM = 0.5;
 
 // The sources outlive the plan. Thread: any number at once.
 struct BakePlan {

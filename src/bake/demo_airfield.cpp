@@ -32,7 +32,7 @@ bool isPainted(double along, double across) {
   if (inside(side, half - 3, half - 1)) return true;                                               // edges
   if (inside(along, 6, 36)) return side > 2 && side < half - 4 && std::fmod(side - 2, 3.6) < 1.8;  // threshold
   if (inside(along, 60, 78) && side > 3 && side < 12) return true;                                 // the number's place
-  if (along > 100 && side < 1 && std::fmod(along - 100, 50) < 30) return true;                     // centreline
+  if (along > 100 && side <= 1 && std::fmod(along - 100, 50) < 30) return true;                    // centreline
   if (inside(along, 400, 460) && inside(side, 9, 18)) return true;                                 // aiming point
   for (const double zone : {150.0, 300.0, 600.0, 750.0}) {                                         // touchdown zone
     if (inside(along, zone, zone + 22.5) && inside(side, 9, 18) && std::fmod(side - 9, 4.5) < 3) return true;
@@ -53,7 +53,7 @@ glm::vec3 airfieldColour(double eastM, double northM, float grain) {
   if (along >= -60 && std::abs(northM) <= kDemoRunwayWidthM / 2 + 7.5) return kAsphalt * light * 1.12f;  // shoulders
   const double taxiNorthM = 190;
   if (along >= 0 && std::abs(northM - taxiNorthM) <= 12) {
-    return std::abs(northM - taxiNorthM) < 1 ? glm::vec3(196, 168, 60) : kAsphalt * light * 1.05f;
+    return std::abs(northM - taxiNorthM) <= 1 ? glm::vec3(196, 168, 60) : kAsphalt * light * 1.05f;
   }
   for (const double at : {12.0, 750.0, half}) {  // links between the two
     if (std::abs(along - at) <= 12 && northM > 0 && northM < taxiNorthM) return kAsphalt * light * 1.05f;

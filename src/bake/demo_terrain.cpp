@@ -27,27 +27,31 @@ double fractal(const Vec3d& p, double longestM, double shortestM, double gain, u
     total += amplitude;
     // An octave fades out before it goes, so that two samplings of one place differ little.
     const double kept = smoothstep(1, 2, waveM / shortestM);
-    if (kept > 0) sum += amplitude * kept * static_cast<double>(valueNoise(p / waveM, seed));
+    if (kept > 0) sum += amplitude * kept * static_cast<double>(gradientNoise(p / waveM, seed));
     ++seed;
   }
-  return sum / total * 1.8;  // value noise seldom reaches its ends
+  return sum / total * 1.6;  // noise seldom reaches its ends
 }
 
-// Ridged multifractal (Musgrave): sharp crests, each octave strong only where those above it are high. 0..1.
+// Ridged multifractal (Musgrave): sharp crests over broad flanks, each octave weaker in the hollows of those above it,
+// so that valleys stay smooth. 0..1.
 double ridges(const Vec3d& p, double longestM, double shortestM, uint32_t seed) {
   double sum = 0, amplitude = 1, total = 0, above = 1;
-  for (double waveM = longestM; waveM > 60; waveM /= 2.07, amplitude *= 0.47) {
-    total += amplitude;
+  for (double waveM = longestM; waveM > 60; waveM /= 2.07, amplitude *= 0.45) {
     const double kept = smoothstep(1, 2, waveM / shortestM);
     if (kept > 0) {
-      const double crest = 1 - std::abs(static_cast<double>(valueNoise(p / waveM, seed)) * 1.3);
-      const double signal = std::clamp(crest * crest, 0.0, 1.0) * above;
-      sum += amplitude * kept * signal;
-      above = std::clamp(signal * 1.8, 0.0, 1.0);
+      const double noise = static_cast<double>(gradientNoise(p / waveM, seed));
+      // Crests are rounded, the more the smaller they are: weather does that.
+      const double round = 0.015 + 0.12 * total;
+      const double crest = 1 - std::sqrt(noise * noise + round * round) + round;
+      const double signal = crest * crest;
+      sum += amplitude * kept * signal * above;
+      above = std::clamp(above * signal * 1.9, 0.15, 1.0);
     }
+    total += amplitude;
     ++seed;
   }
-  return std::clamp(sum / total * 1.25, 0.0, 1.0);
+  return smoothstep(0.2, 1.0, sum / total);
 }
 
 // The world at large: continents with mountain chains.
@@ -68,7 +72,7 @@ double countryHeightM(const Vec3d& p, double eastKm, double northKm, double shor
   const double fromRunwayKm = std::hypot(std::max(std::abs(eastKm) - 9, 0.0), northKm);
   const double highland = smoothstep(5, 30, toCoastKm) * smoothstep(4.5, 15, fromRunwayKm) *
                           smoothstep(-0.75, 0.45, fractal(p, 60e3, 4e4, 0.5, 260) + 0.35);
-  return plainM + 1950 * highland * std::pow(ridges(p, 21e3, shortestM, 300), 1.15);
+  return plainM + 1900 * highland * ridges(p, 19e3, shortestM, 300);
 }
 
 GeoGrid gridFor(double south, double north, double west, double east, double stepDeg) {

@@ -201,7 +201,7 @@ Result<ElevationPage> ElevationLayer::makePage(int64_t pageRow, int64_t pageColu
     }
   }
   if (anyVoid) {
-    if (auto filled = interpolateVoids(heights, isVoid); !filled) return tl::unexpected(filled.error());
+    if (auto filled = interpolateVoids(heights, std::move(isVoid)); !filled) return tl::unexpected(filled.error());
   }
 
   page.rows = page.columns = static_cast<int>(posts);

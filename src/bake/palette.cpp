@@ -13,9 +13,10 @@ constexpr glm::vec3 rgb(int r, int g, int b) {
 }
 
 // Sampled by eye from summer orthophotos and true-colour satellite pictures.
-const glm::vec3 kDeepWater = rgb(14, 36, 66), kShallowWater = rgb(46, 92, 108), kShoreWater = rgb(74, 118, 122);
+const glm::vec3 kDeepWater = rgb(12, 32, 62), kShallowWater = rgb(28, 70, 98), kShoreWater = rgb(40, 88, 112);
 const glm::vec3 kBeach = rgb(188, 174, 134);
-const glm::vec3 kField = rgb(142, 146, 84), kPasture = rgb(104, 128, 64), kForest = rgb(46, 72, 38);
+const glm::vec3 kField = rgb(150, 146, 92), kPasture = rgb(108, 126, 68);
+const glm::vec3 kForest = rgb(44, 68, 38), kLightForest = rgb(74, 96, 50);
 const glm::vec3 kRainForest = rgb(38, 72, 32), kSteppe = rgb(168, 150, 98), kDesert = rgb(198, 168, 122);
 const glm::vec3 kTaiga = rgb(54, 68, 46), kTundra = rgb(124, 116, 88);
 const glm::vec3 kMeadow = rgb(118, 124, 72), kScree = rgb(138, 128, 114), kRock = rgb(112, 104, 96);
@@ -44,17 +45,17 @@ glm::vec3 waterColour(double depthM) {
 
 // Open country at sea level: rain forest, savanna and desert, fields, steppe, tundra.
 glm::vec3 openColour(double latDeg, double noise) {
-  const double lat = std::abs(latDeg) + 5 * noise;
+  const double lat = std::abs(latDeg) + 3 * noise;
   glm::vec3 colour = mix(kRainForest, kSteppe, smoothstep(8, 17, lat));
-  colour = mix(colour, kDesert, smoothstep(15, 22, lat) * (1 - smoothstep(29, 35, lat)));
-  colour = mix(colour, mix(kPasture, kField, 0.5 + 0.5 * noise), smoothstep(30, 38, lat));
+  colour = mix(colour, kDesert, smoothstep(15, 21, lat) * (1 - smoothstep(27, 33, lat)));
+  colour = mix(colour, mix(kPasture, kField, 0.5 + 0.5 * noise), smoothstep(29, 34, lat));
   return mix(colour, kTundra, smoothstep(60, 69, lat));
 }
 
 // How much of the land below the treeline is wooded, by latitude: a lot in the tropics and the north, little between.
 double woodedShare(double latDeg) {
   const double lat = std::abs(latDeg);
-  const double dry = smoothstep(10, 20, lat) * (1 - smoothstep(30, 38, lat));
+  const double dry = smoothstep(10, 20, lat) * (1 - smoothstep(29, 34, lat));
   return (1 - 0.9 * dry) * (1 - smoothstep(64, 70, lat));
 }
 
@@ -74,7 +75,7 @@ glm::vec3 groundColour(const GroundSample& ground) {
   const double noise = static_cast<double>(ground.broadNoise);
   const double grain = static_cast<double>(ground.grainNoise);
   // Water: below sea level, or at it and flat. Dry basins below it are few; what is not flat is taken for land.
-  const double water = (1 - smoothstep(-0.5, 0.6, ground.heightM)) *
+  const double water = (1 - smoothstep(0.05, 0.7, ground.heightM)) *
                        (ground.heightM < -1 ? 1.0 : 1 - smoothstep(0.02, 0.06, ground.slope));
   const glm::vec3 sea = waterColour(std::max(0.0, -ground.heightM)) * static_cast<float>(1 + 0.015 * grain);
   const double ice = smoothstep(74, 79, std::abs(ground.latDeg) + 1.5 * noise);
@@ -86,9 +87,14 @@ glm::vec3 groundColour(const GroundSample& ground) {
   glm::vec3 land = openColour(ground.latDeg, noise);
   land = mix(land, kPasture, 0.6 * smoothstep(0.15 * treeline, 0.45 * treeline, height) * woodedShare(ground.latDeg));
   // Woods stand on slopes and in the hills; flat lowland is mostly cleared.
-  const double hilly = smoothstep(0.05, 0.22, slope) + 0.7 * smoothstep(0.2 * treeline, 0.55 * treeline, height) - 0.35;
-  const double wooded = woodedShare(ground.latDeg) * smoothstep(-0.25, 0.35, hilly + 0.65 * noise);
-  const glm::vec3 forest = mix(kForest, kTaiga, smoothstep(52, 62, std::abs(ground.latDeg)));
+  const double hilly =
+      0.9 * smoothstep(0.06, 0.3, slope) + 0.55 * smoothstep(0.25 * treeline, 0.7 * treeline, height) - 0.45;
+  const double wooded = woodedShare(ground.latDeg) * smoothstep(-0.3, 0.45, hilly + 0.75 * noise);
+  // Beech and meadow edges below, dark spruce above, in stands.
+  const double stand =
+      smoothstep(-0.5, 0.6, 0.9 * noise + 0.35 * grain - 1.6 * (height / std::max(treeline, 300.0) - 0.5));
+  const glm::vec3 forest =
+      mix(mix(kForest, kLightForest, 0.75 * stand), kTaiga, smoothstep(52, 62, std::abs(ground.latDeg)));
   const double belowTrees = 1 - smoothstep(treeline - 150, treeline + 150, height + 160 * noise);
   land = mix(land, forest, 0.88 * wooded * belowTrees);
   // Above the trees: alpine meadow, then scree.
@@ -109,8 +115,8 @@ glm::vec3 groundColour(const GroundSample& ground) {
   land = mix(land, kBeach, 0.8 * beach * (1 - smoothstep(58, 66, std::abs(ground.latDeg))));
 
   // Ridges catch light from all of the sky, hollows and steep faces less: no sun is in this.
-  const double open = std::clamp(4.0 * ground.curvature, -0.16, 0.14);
-  const double shade = (1 - 0.16 * smoothstep(0.1, 1.2, slope)) * (1 + open) * (1 + (0.07 - 0.05 * snow) * grain);
+  const double open = std::clamp(5.0 * ground.curvature, -0.22, 0.2);
+  const double shade = (1 - 0.16 * smoothstep(0.1, 1.2, slope)) * (1 + open) * (1 + (0.11 - 0.08 * snow) * grain);
   land = glm::clamp(land * static_cast<float>(shade), 0.0f, 1.0f);
   return mix(land, mix(sea, kIce, ice), water);
 }

@@ -23,7 +23,7 @@ struct PostWindow {
 
 // Interpolates the missing posts that `isVoid` flags, from valid posts within kFillPosts; what is farther stays
 // missing. A post's result depends only on posts within that distance.
-Result<void> interpolateVoids(PostWindow& window, const std::vector<uint8_t>& isVoid);
+Result<void> interpolateVoids(PostWindow& window, std::vector<uint8_t> isVoid);
 
 // For every missing post within kFadePosts of a valid one: the nearest valid post (an index into the window) and the
 // weight of the source there, falling from 1 at a valid post to 0. `nearest` is -1 where no valid post is that near.

@@ -92,7 +92,7 @@ void addBakeOptions(CLI::App& app, Arguments& arguments) {
       ->type_name("N");
   app.add_option(
          "--error", job.plan.errorM,
-         "Greatest error of the finest level in metres; default: 0.25 for 3-arc-second posts and finer, more for "
+         "Greatest error of the finest level in metres; default: 0.5 for 3-arc-second posts and finer, more for "
          "coarser ones")
       ->check(CLI::Range(0.001, 10000.0))
       ->type_name("M");
