@@ -15,8 +15,6 @@ namespace {
 constexpr Geodetic kSite = {kDemoRunwayLatDeg, kDemoRunwayLonDeg, kDemoRunwayElevationM};
 constexpr double kCockpitM = 4;  // the eye above the runway while the wheels are on it
 constexpr double kOnRunwayM = kDemoRunwayElevationM + kCockpitM;
-// Flights over mountains whose shape they do not know keep this high.
-constexpr double kClearM = kDemoHighestTerrainM + 150;
 
 Geodetic placeAt(double eastM, double northM, double altM) {
   Geodetic place = offsetBy(kSite, eastM, northM);
@@ -27,15 +25,11 @@ Geodetic placeAt(double eastM, double northM, double altM) {
 // Legs: seconds, speed at the end (m/s), turn (degrees/s, clockwise), climb (m/s).
 
 const FlightPath& tour() {
-  static const FlightPath path({placeAt(-1350, 0, kOnRunwayM),
-                                kDemoRunwayHeadingDeg,
-                                0,
-                                {{22, 85, 0, 0},
-                                 {10, 120, 0, 20},
-                                 {16, 155, -2.2, 48},
-                                 {20, 165, 0, 48},
-                                 {8, 165, 2.4, 10},
-                                 {14, 165, -1.5, 0}}});
+  static const FlightPath path(
+      {placeAt(-1350, 0, kOnRunwayM),
+       kDemoRunwayHeadingDeg,
+       0,
+       {{16, 95, 0, 0}, {6, 125, 0, 12}, {38, 210, -2.0, 10}, {14, 225, 0, 32}, {16, 225, 2.2, 8}}});
   return path;
 }
 
@@ -47,20 +41,17 @@ const FlightPath& takeoff() {
   return path;
 }
 
+// Out of the northern basin through a valley, over a saddle of 1,300 m and down to the airfield.
 const FlightPath& lowLevel() {
-  static const FlightPath path({placeAt(-20'000, 8'000, kClearM),
-                                80,
-                                150,
-                                {{10, 150, 0, 0},
-                                 {12, 150, 2.2, 4},
-                                 {14, 150, -2.2, 4},
-                                 {10, 155, 0, -2},
-                                 {14, 160, -2.2, -2},
-                                 {16, 160, 2.4, 6},
-                                 {10, 155, 0, -6},
-                                 {12, 150, 2.0, -3},
-                                 {12, 150, -2.4, 3},
-                                 {10, 150, 0, 0}}});
+  static const FlightPath path({placeAt(-2'000, 28'000, 520),
+                                235,
+                                170,
+                                {{40, 170, 0, 0},
+                                 {22, 170, -2.2, 0},
+                                 {26, 165, 0, 8},
+                                 {30, 160, -0.3, 32},
+                                 {10, 165, -2, -10},
+                                 {34, 175, 0, -30}}});
   return path;
 }
 
@@ -77,13 +68,13 @@ const FlightPath& approach() {
   return path;
 }
 
-constexpr double kOrbitRadiusM = 6000, kOrbitSpeedMS = 150;
+constexpr double kOrbitRadiusM = 6000, kOrbitSpeedMS = 150, kOrbitAltM = 900;
 constexpr double kOrbitS = 2 * std::numbers::pi * kOrbitRadiusM / kOrbitSpeedMS;  // one turn: it can be looped
 
 Pose orbitAt(double timeS) {
   const auto positionAt = [](double t) {
     const double angle = 2 * std::numbers::pi * t / kOrbitS;  // clockwise from north
-    return placeAt(kOrbitRadiusM * std::sin(angle), kOrbitRadiusM * std::cos(angle), kClearM + 150);
+    return placeAt(kOrbitRadiusM * std::sin(angle), kOrbitRadiusM * std::cos(angle), kOrbitAltM);
   };
   return poseAlongPath(positionAt, std::clamp(timeS, 0.0, kOrbitS), 0);
 }

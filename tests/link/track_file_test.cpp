@@ -149,7 +149,7 @@ TEST_CASE("real IGC flights are read and fly plausibly") {
                                                   {"glider_nimbus4_frenchalps_1hz.igc", 27000},
                                                   {"helicopter_germany_4s.igc", 900}};
   for (const auto& [name, atLeast] : files) {
-    const std::string path = std::string(EYE_TEST_DATA) + "/tracks/igc/" + name;
+    const std::string path = fmt::format("{}/tracks/igc/{}", EYE_TEST_DATA, name);
     const auto track = loadTrack(path);
     if (!track && track.error().kind == ErrorKind::notFound) {
       WARN("not tested: " << track.error().message);
