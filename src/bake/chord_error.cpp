@@ -61,6 +61,18 @@ void addCrossings(const std::vector<double>& lines, const Parabola& p, std::vect
   }
 }
 
+// Whether a chord certainly misses the grid, told cheaply. False near a pole, where lines bend at will.
+bool passesBeside(const SampleGrid& grid, const ChordEnd& a, const ChordEnd& b) {
+  const double dLat = b.latDeg - a.latDeg, dLon = b.lonDeg - a.lonDeg;
+  if (std::max(std::abs(a.latDeg), std::abs(b.latDeg)) > 75.0) return false;
+  // The bulge in radians is below (dLat^2 + dLon^2) tan(lat) / 8, and tan 75 < 4.
+  const double bulgeDeg = radFromDeg(dLat * dLat + dLon * dLon) + kOutsideDeg;
+  return std::max(a.latDeg, b.latDeg) + bulgeDeg < grid.latDeg.front() ||
+         std::min(a.latDeg, b.latDeg) - bulgeDeg > grid.latDeg.back() ||
+         std::max(a.lonDeg, b.lonDeg) + bulgeDeg < grid.lonDeg.front() ||
+         std::min(a.lonDeg, b.lonDeg) - bulgeDeg > grid.lonDeg.back();
+}
+
 class Measure {
  public:
   Measure(const SampleGrid& grid, double toleranceM, ChordError& worst)
@@ -68,24 +80,21 @@ class Measure {
 
   void chord(const ChordEnd& a, const ChordEnd& b, int cutsLeft) {
     // Second-order terms of a straight line in geodetic coordinates, from the equations of a geodesic and of its
-    // height; the third order is what limits the length.
-    const double middleLat = radFromDeg((a.latDeg + b.latDeg) / 2.0);
-    const double sinLat = std::sin(middleLat), cosLat = std::cos(middleLat);
-    const double meridianM = meridianRadiusM(sinLat), primeM = primeVerticalRadiusM(sinLat);
+    // height; the third order is what limits the length. Within a row the radii hardly change.
+    const double middleLatDeg = (a.latDeg + b.latDeg) / 2.0;
+    const SampleGrid::Curvature at = curvatureAt(middleLatDeg);
     const double dLat = radFromDeg(b.latDeg - a.latDeg), dLon = radFromDeg(b.lonDeg - a.lonDeg);
-    const double northM = meridianM * dLat, eastM = primeM * cosLat * dLon;
-    const double length2 = northM * northM + eastM * eastM;
-    const double tanLat = std::abs(sinLat) / cosLat;
-    const double thirdOrderM =
-        length2 * std::sqrt(length2) * std::max(1.0, tanLat * tanLat) / (8.0 * kSemiMinorM * kSemiMinorM);
-    if (thirdOrderM > toleranceM_ * 1e-3 && cutsLeft > 0) {
+    const double north2 = at.meridianM * dLat * dLat, east2 = at.primeM * at.cosLat * at.cosLat * dLon * dLon;
+    const double length2 = (north2 + east2) * kSemiMajorM, tanLat = at.sinLat / at.cosLat;
+    const double thirdOrder = length2 * std::max(1.0, tanLat * tanLat) / (8.0 * kSemiMinorM * kSemiMinorM);
+    if (thirdOrder * thirdOrder * length2 > toleranceM_ * toleranceM_ * 1e-6 && cutsLeft > 0) {
       cutInHalf(a, b, cutsLeft - 1);
       return;
     }
-    const double climb = (b.altM - a.altM) / (4.0 * primeM);
-    const double latRise = (primeM / meridianM) * sinLat * cosLat * dLon * dLon / 8.0 + climb * dLat;
-    const double lonRise = -(meridianM / primeM) * (sinLat / cosLat) * dLat * dLon / 4.0 + climb * dLon;
-    const double altRise = -(meridianM * dLat * dLat + primeM * cosLat * cosLat * dLon * dLon) / 8.0;
+    const double climb = (b.altM - a.altM) / (4.0 * at.primeM), ratio = at.primeM / at.meridianM;
+    const double latRise = ratio * at.sinLat * at.cosLat * dLon * dLon / 8.0 + climb * dLat;
+    const double lonRise = -tanLat / ratio * dLat * dLon / 4.0 + climb * dLon;
+    const double altRise = -(north2 + east2) / 8.0;
     lat_ = parabolaThrough(a.latDeg, b.latDeg, degFromRad(latRise));
     lon_ = parabolaThrough(a.lonDeg, b.lonDeg, degFromRad(lonRise));
     alt_ = parabolaThrough(a.altM, b.altM, altRise);
@@ -93,6 +102,14 @@ class Measure {
   }
 
  private:
+  SampleGrid::Curvature curvatureAt(double latDeg) const {
+    if (latDeg >= grid_.latDeg.front() && latDeg <= grid_.latDeg.back()) {
+      return grid_.curvature[cellOf(grid_.latDeg, latDeg)];
+    }
+    const Parallel p = parallelAt(latDeg);
+    return {meridianRadiusM(p.sinLat), p.primeVerticalM, p.sinLat, p.cosLat};
+  }
+
   void cutInHalf(ChordEnd a, ChordEnd b, int cutsLeft) {
     // At a pole itself the longitude is the other end's.
     if (std::abs(a.latDeg) > kPoleDeg) a.lonDeg = b.lonDeg;
@@ -128,45 +145,56 @@ class Measure {
         lonDeg < grid_.lonDeg.front() - kOutsideDeg || lonDeg > grid_.lonDeg.back() + kOutsideDeg) {
       return;
     }
-    const size_t row = cellOf(grid_.latDeg, latDeg), column = cellOf(grid_.lonDeg, lonDeg);
-    const double atBegin = departure(begin, row, column), atMiddle = departure(middle, row, column);
-    const double atEnd = departure(end, row, column);
-    keep(atBegin, begin, row, column);
-    keep(atMiddle, middle, row, column);
-    keep(atEnd, end, row, column);
-    const double curvature = atBegin - 2.0 * atMiddle + atEnd;
-    const double u = 0.5 + (atBegin - atEnd) / (4.0 * curvature);
+    setCell(cellOf(grid_.latDeg, latDeg), cellOf(grid_.lonDeg, lonDeg));
+    const double atBegin = departure(begin), atMiddle = departure(middle), atEnd = departure(end);
+    keep(atBegin, begin);
+    keep(atMiddle, middle);
+    keep(atEnd, end);
+    const double u = 0.5 + (atBegin - atEnd) / (4.0 * (atBegin - 2.0 * atMiddle + atEnd));
     if (u > 0.0 && u < 1.0) {
       const double extremum = begin + u * (end - begin);
-      keep(departure(extremum, row, column), extremum, row, column);
+      keep(departure(extremum), extremum);
     }
   }
 
-  double surfaceM(double u, size_t row, size_t column) const {
-    const double t = (lat_.at(u) - grid_.latDeg[row]) / (grid_.latDeg[row + 1] - grid_.latDeg[row]);
-    const double s = (lon_.at(u) - grid_.lonDeg[column]) / (grid_.lonDeg[column + 1] - grid_.lonDeg[column]);
-    const double south = grid_.at(row, column) + s * (grid_.at(row, column + 1) - grid_.at(row, column));
-    const double north = grid_.at(row + 1, column) + s * (grid_.at(row + 1, column + 1) - grid_.at(row + 1, column));
-    return south + t * (north - south);
+  void setCell(size_t row, size_t column) {
+    cellLat_ = grid_.latDeg[row];
+    cellLon_ = grid_.lonDeg[column];
+    const double perLat = 1.0 / (grid_.latDeg[row + 1] - cellLat_),
+                 perLon = 1.0 / (grid_.lonDeg[column + 1] - cellLon_);
+    const double sw = grid_.at(row, column), se = grid_.at(row, column + 1);
+    const double nw = grid_.at(row + 1, column), ne = grid_.at(row + 1, column + 1);
+    cornerM_ = sw;
+    slopeLat_ = (nw - sw) * perLat;
+    slopeLon_ = (se - sw) * perLon;
+    twist_ = (sw + ne - se - nw) * perLat * perLon;
   }
 
-  double departure(double u, size_t row, size_t column) const { return surfaceM(u, row, column) - alt_.at(u); }
+  double surfaceM(double u) const {
+    const double lat = lat_.at(u) - cellLat_, lon = lon_.at(u) - cellLon_;
+    return cornerM_ + slopeLat_ * lat + (slopeLon_ + twist_ * lat) * lon;
+  }
 
-  void keep(double departureM, double u, size_t row, size_t column) {
+  double departure(double u) const { return surfaceM(u) - alt_.at(u); }
+
+  void keep(double departureM, double u) {
     if (std::abs(departureM) <= worst_.errorM) return;
-    worst_ = ChordError{std::abs(departureM), LatLon{lat_.at(u), lon_.at(u)}, surfaceM(u, row, column)};
+    worst_ = ChordError{std::abs(departureM), LatLon{lat_.at(u), lon_.at(u)}, surfaceM(u)};
   }
 
   const SampleGrid& grid_;
   double toleranceM_;
   ChordError& worst_;
   Parabola lat_, lon_, alt_;
+  // The bilinear cell at hand, from its south-west corner.
+  double cellLat_ = 0, cellLon_ = 0, cornerM_ = 0, slopeLat_ = 0, slopeLon_ = 0, twist_ = 0;
 };
 
 }  // namespace
 
 void findChordError(const SampleGrid& grid, const ChordEnd& a, const ChordEnd& b, double toleranceM,
                     ChordError& worst) {
+  if (passesBeside(grid, a, b)) return;
   ChordEnd from = a, to = b;
   if (std::abs(from.latDeg) > kPoleDeg) from.lonDeg = to.lonDeg;
   if (std::abs(to.latDeg) > kPoleDeg) to.lonDeg = from.lonDeg;

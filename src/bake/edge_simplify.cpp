@@ -27,13 +27,14 @@ constexpr double kMinGapSteps = 4.0;
 struct Candidate {
   double alongDeg = 0;
   EdgePoint point;
+  Vec3d roundedEcefM{};  // on the lattice, as it will be drawn
   Vec3d up{};
 };
 
 class UnitCurve {
  public:
-  UnitCurve(const ElevationSurface& surface, const EdgeUnit& unit)
-      : surface_(surface), unit_(unit), isParallel_(unit.from.latDeg == unit.to.latDeg) {}
+  UnitCurve(const ElevationSurface& surface, const EdgeUnit& unit, double stepM)
+      : surface_(surface), unit_(unit), stepM_(stepM), isParallel_(unit.from.latDeg == unit.to.latDeg) {}
 
   bool isParallel() const { return isParallel_; }
   double beginDeg() const { return isParallel_ ? unit_.from.lonDeg : unit_.from.latDeg; }
@@ -48,6 +49,7 @@ class UnitCurve {
     const LatLon canonical = canonicalPlace(c.point.place);
     c.point.heightM = surface_.heightM(canonical.latDeg, canonical.lonDeg);
     c.point.ecefM = ecefFromGeodetic({canonical.latDeg, canonical.lonDeg, c.point.heightM});
+    c.roundedEcefM = ecefFromLattice(latticeFromEcef(c.point.ecefM, stepM_), stepM_);
     c.up = upAt(canonical.latDeg, canonical.lonDeg);
     return c;
   }
@@ -114,15 +116,15 @@ class UnitCurve {
 
   const ElevationSurface& surface_;
   EdgeUnit unit_;
+  double stepM_;
   bool isParallel_;
 };
 
 // Ends, post crossings, and where these are far apart enough points between that the Earth's curvature is seen.
-std::vector<Candidate> collectCandidates(const UnitCurve& curve, double toleranceM, double stepM) {
+std::vector<Candidate> collectCandidates(const UnitCurve& curve, double toleranceM, double minGapDeg) {
   std::vector<double> lines;
   curve.collectLines(curve.beginDeg(), curve.endDeg(), lines);
   const double metresPerDeg = radFromDeg(curve.radiusM());
-  const double minGapDeg = kMinGapSteps * stepM / metresPerDeg;
   // An arc of length s rises s^2 / 8r above its chord; a sixteenth of the tolerance goes unseen.
   const double maxGapDeg = std::max(std::sqrt(toleranceM * curve.radiusM() / 2.0) / metresPerDeg, minGapDeg);
 
@@ -133,7 +135,7 @@ std::vector<Candidate> collectCandidates(const UnitCurve& curve, double toleranc
     for (int i = 1; i < parts; ++i) candidates.push_back(curve.at(fromDeg + (alongDeg - fromDeg) * i / parts));
   };
   for (const double line : lines) {
-    if (line - candidates.back().alongDeg < minGapDeg || curve.endDeg() - line < minGapDeg) continue;
+    if (line <= candidates.back().alongDeg || line >= curve.endDeg()) continue;
     fillTo(line);
     candidates.push_back(curve.at(line));
   }
@@ -144,36 +146,35 @@ std::vector<Candidate> collectCandidates(const UnitCurve& curve, double toleranc
 
 // From a candidate to the point of the segment a-b beside it.
 Vec3d offsetToSegment(const Candidate& a, const Candidate& b, const Candidate& c) {
-  const Vec3d along = b.point.ecefM - a.point.ecefM;
+  const Vec3d along = b.roundedEcefM - a.roundedEcefM;
   const Vec3d level = along - glm::dot(along, c.up) * c.up;
-  const double share = glm::dot(c.point.ecefM - a.point.ecefM, level) / glm::dot(along, level);
-  return a.point.ecefM + std::clamp(share, 0.0, 1.0) * along - c.point.ecefM;
+  const double share = glm::dot(c.point.ecefM - a.roundedEcefM, level) / glm::dot(along, level);
+  return a.roundedEcefM + std::clamp(share, 0.0, 1.0) * along - c.point.ecefM;
 }
 
 // The candidate between two that calls for a split, or `first` where none does.
 size_t findSplit(const UnitCurve& curve, const std::vector<Candidate>& candidates, size_t first, size_t last,
-                 double toleranceM) {
+                 double toleranceM, double minGapDeg) {
+  const Candidate &a = candidates[first], &b = candidates[last];
   size_t split = first;
   double worst = 1.0, widest = 0.0;  // shares of what is allowed
+  const auto consider = [&](size_t i, double share) {
+    const double alongDeg = candidates[i].alongDeg;
+    if (share <= worst || alongDeg - a.alongDeg < minGapDeg || b.alongDeg - alongDeg < minGapDeg) return;
+    worst = share;
+    split = i;
+  };
   for (size_t i = first + 1; i < last; ++i) {
-    const Vec3d offset = offsetToSegment(candidates[first], candidates[last], candidates[i]);
+    const Vec3d offset = offsetToSegment(a, b, candidates[i]);
     const double vertical = glm::dot(offset, candidates[i].up);
     const double horizontal = glm::length(offset - vertical * candidates[i].up);
     widest = std::max(widest, horizontal);
-    const double share = std::max(std::abs(vertical) / kVerticalShare, horizontal / kHorizontalShare) / toleranceM;
-    if (share > worst) {
-      worst = share;
-      split = i;
-    }
+    consider(i, std::max(std::abs(vertical) / kVerticalShare, horizontal / kHorizontalShare) / toleranceM);
   }
   if (split != first || widest < kNoticedHorizontalShare * toleranceM) return split;
   for (size_t i = first + 1; i < last; ++i) {
-    const Vec3d offset = offsetToSegment(candidates[first], candidates[last], candidates[i]);
-    const double share = std::abs(curve.gapAboveSegmentM(candidates[i], offset)) / (kAboveSegmentShare * toleranceM);
-    if (share > worst) {
-      worst = share;
-      split = i;
-    }
+    const Vec3d offset = offsetToSegment(a, b, candidates[i]);
+    consider(i, std::abs(curve.gapAboveSegmentM(candidates[i], offset)) / (kAboveSegmentShare * toleranceM));
   }
   return split;
 }
@@ -183,14 +184,15 @@ size_t findSplit(const UnitCurve& curve, const std::vector<Candidate>& candidate
 // Ramer (1972), Douglas & Peucker (1973).
 std::vector<EdgePoint> simplifyEdge(const ElevationSurface& surface, const EdgeUnit& unit, double toleranceM,
                                     double stepM) {
-  const UnitCurve curve(surface, unit);
-  const std::vector<Candidate> candidates = collectCandidates(curve, toleranceM, stepM);
+  const UnitCurve curve(surface, unit, stepM);
+  const double minGapDeg = kMinGapSteps * stepM / radFromDeg(curve.radiusM());
+  const std::vector<Candidate> candidates = collectCandidates(curve, toleranceM, minGapDeg);
   std::vector<EdgePoint> kept{candidates.front().point};
   std::vector<size_t> ends{candidates.size() - 1};  // of segments still to be looked at, the next one last
   size_t first = 0;
   while (!ends.empty()) {
     const size_t last = ends.back();
-    const size_t split = findSplit(curve, candidates, first, last, toleranceM);
+    const size_t split = findSplit(curve, candidates, first, last, toleranceM, minGapDeg);
     if (split != first) {
       ends.push_back(split);
       continue;

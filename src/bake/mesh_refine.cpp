@@ -6,6 +6,11 @@
 namespace eye {
 namespace {
 
+// Samples of a tile: 64 bytes each, so 32 MiB a thread.
+constexpr size_t kMaxSamples = 500'000;
+// Beyond this latitude bounds of a straight line cannot be told from its ends.
+constexpr double kBendsFreelyDeg = 75.0;
+
 size_t at(int32_t index) {
   return static_cast<size_t>(index);
 }
@@ -117,7 +122,6 @@ void MeshRefiner::insertSamples(double toleranceM) {
     }
     // Refused: the triangle's next worst.
     Work& w = work(top.triangle);
-    ++w.version;
     w.worstM = 0;
     w.worstSample = -1;
     pool_.clear();
@@ -161,21 +165,44 @@ bool MeshRefiner::insertOnEdge(const SampleGrid& grid, int32_t triangle, double 
   return worst.errorM > toleranceM && insert(worst.place, worst.heightM, triangle);
 }
 
+// A measured triangle is never touched: an insertion replaces it by others.
 void MeshRefiner::beginMeasure() {
-  for (Work& w : work_) {
-    w.measured = ChordError{};
-    w.edgeM = {-1, -1, -1};
+  exceeding_.clear();
+  reach_.clear();
+  const std::vector<Triangulation::Triangle>& triangles = mesh_->triangulation().triangles();
+  for (size_t t = 0; t < triangles.size(); ++t) {
+    if (work_[t].isMeasured) continue;
+    work_[t].edgeM = {0, 0, 0};
+    TileBounds b{90, -90, 360, -360};
+    double spanDeg = 0;
+    for (const int32_t v : triangles[t].vertex) {
+      const ChordEnd& p = mesh_->vertices()[at(v)].rounded;
+      b = {std::min(b.southDeg, p.latDeg), std::max(b.northDeg, p.latDeg), std::min(b.westDeg, p.lonDeg),
+           std::max(b.eastDeg, p.lonDeg)};
+      if (std::abs(p.latDeg) > kBendsFreelyDeg) spanDeg = 360.0;
+    }
+    // Straight sides bulge out of these bounds by less than the span squared, in radians.
+    spanDeg = std::max({spanDeg, b.northDeg - b.southDeg, b.eastDeg - b.westDeg});
+    const double bulgeDeg = radFromDeg(spanDeg * spanDeg);
+    reach_.push_back({b.southDeg - bulgeDeg, b.northDeg + bulgeDeg, b.westDeg - bulgeDeg, b.eastDeg + bulgeDeg});
   }
 }
 
-void MeshRefiner::measurePart(const SampleGrid& grid, double toleranceM) {
+bool MeshRefiner::needsMeasure(const TileBounds& r) const {
+  return std::any_of(reach_.begin(), reach_.end(), [&](const TileBounds& b) {
+    return b.southDeg <= r.northDeg && b.northDeg >= r.southDeg && b.westDeg <= r.eastDeg && b.eastDeg >= r.westDeg;
+  });
+}
+
+// Posts over triangles not measured yet; those that exceed the tolerance become samples.
+void MeshRefiner::measurePosts(const SampleGrid& grid, double toleranceM) {
   const TileFrame& frame = mesh_->frame();
   meridians_.clear();
   for (const double lonDeg : grid.lonDeg) meridians_.push_back(meridianAt(lonDeg));
-  int32_t near = 0, rowStart = 0;
+  int32_t rowStart = 0;
   for (size_t row = 0; row < grid.latDeg.size(); ++row) {
     const Parallel parallel = parallelAt(grid.latDeg[row]);
-    near = rowStart;
+    int32_t near = rowStart;
     for (size_t column = 0; column < grid.lonDeg.size(); ++column) {
       const double heightM = grid.at(row, column);
       const PlanePoint p = planeFromEcef(frame, ecefFromGraticule(parallel, meridians_[column], heightM));
@@ -183,51 +210,71 @@ void MeshRefiner::measurePart(const SampleGrid& grid, double toleranceM) {
       if (triangle == kNoTriangle) continue;
       near = triangle;
       if (column == 0) rowStart = triangle;
+      Work& w = work(triangle);
+      if (w.isMeasured) continue;
       const double errorM = std::abs(p.z - mesh_->facet(triangle).at(p.x, p.y)) * metresPerZ(frame, p);
-      ChordError& measured = work(triangle).measured;
-      if (errorM > measured.errorM) measured = {errorM, {grid.latDeg[row], grid.lonDeg[column]}, heightM};
-    }
-  }
-  const std::vector<Triangulation::Triangle>& triangles = mesh_->triangulation().triangles();
-  for (size_t t = 0; t < triangles.size(); ++t) {
-    for (size_t i = 0; i < 3; ++i) {
-      if (triangles[t].neighbour[i] > static_cast<int32_t>(t)) continue;  // the other side's turn
-      const ChordEnd& from = mesh_->vertices()[at(triangles[t].vertex[(i + 1) % 3])].rounded;
-      const ChordEnd& to = mesh_->vertices()[at(triangles[t].vertex[(i + 2) % 3])].rounded;
-      if (triangles[t].neighbour[i] != kNoTriangle) {
-        findChordError(grid, from, to, toleranceM, work_[t].measured);
+      w.postsM = std::max(w.postsM, errorM);
+      if (errorM <= toleranceM) continue;
+      if (samples_.size() >= kMaxSamples) {
+        if (errorM > w.unsampled.errorM) w.unsampled = {errorM, {grid.latDeg[row], grid.lonDeg[column]}, heightM};
         continue;
       }
-      ChordError border;  // counts, but nothing can be inserted there
-      findChordError(grid, from, to, toleranceM, border);
-      work_[t].edgeM[i] = std::max(work_[t].edgeM[i], border.errorM);
+      samples_.push_back({p, metresPerZ(frame, p), grid.latDeg[row], grid.lonDeg[column], heightM, -1, false});
+      own(triangle, static_cast<int32_t>(samples_.size() - 1));
+    }
+  }
+}
+
+void MeshRefiner::measureEdge(const SampleGrid& grid, int32_t triangle, size_t side, double toleranceM) {
+  const Triangulation::Triangle& corners = mesh_->triangulation().triangles()[at(triangle)];
+  ChordError error;
+  findChordError(grid, mesh_->vertices()[at(corners.vertex[(side + 1) % 3])].rounded,
+                 mesh_->vertices()[at(corners.vertex[(side + 2) % 3])].rounded, toleranceM, error);
+  Work& w = work(triangle);
+  w.edgeM[side] = std::max(w.edgeM[side], error.errorM);
+  // On the border nothing can be inserted.
+  if (error.errorM > toleranceM && corners.neighbour[side] != kNoTriangle) {
+    exceeding_.push_back({error, triangle, w.version});
+  }
+}
+
+void MeshRefiner::measurePart(const SampleGrid& grid, double toleranceM) {
+  measurePosts(grid, toleranceM);
+  const std::vector<Triangulation::Triangle>& triangles = mesh_->triangulation().triangles();
+  for (size_t t = 0; t < triangles.size(); ++t) {
+    if (work_[t].isMeasured) continue;
+    for (size_t i = 0; i < 3; ++i) {
+      // Once for both sides, unless the other side is not looked at.
+      const int32_t other = triangles[t].neighbour[i];
+      if (other > static_cast<int32_t>(t) && !work(other).isMeasured) continue;
+      measureEdge(grid, static_cast<int32_t>(t), i, toleranceM);
     }
   }
 }
 
 bool MeshRefiner::insertMeasured(double toleranceM) {
-  std::vector<Ranked> worst;
   for (size_t t = 0; t < work_.size(); ++t) {
-    if (work_[t].measured.errorM > toleranceM) {
-      worst.push_back({work_[t].measured.errorM, static_cast<int32_t>(t), work_[t].version});
-    }
+    Work& w = work_[t];
+    w.isMeasured = true;
+    if (w.unsampled.errorM > 0) exceeding_.push_back({w.unsampled, static_cast<int32_t>(t), w.version});
+    w.unsampled = ChordError{};
   }
-  std::sort(worst.begin(), worst.end(), [](const Ranked& a, const Ranked& b) { return b < a; });
-  bool hasInserted = false;
-  for (const Ranked& r : worst) {
-    // An insertion close by may have replaced the triangle; the next measure tells whether it was enough.
-    if (work(r.triangle).version != r.version) continue;
-    const ChordError measured = work(r.triangle).measured;
-    hasInserted = insert(measured.place, measured.heightM, r.triangle) || hasInserted;
-  }
+  const size_t before = mesh_->vertices().size();
   insertSamples(toleranceM);
-  return hasInserted;
+  std::sort(exceeding_.begin(), exceeding_.end(), [](const Exceeding& a, const Exceeding& b) {
+    return a.error.errorM != b.error.errorM ? a.error.errorM > b.error.errorM : a.triangle < b.triangle;
+  });
+  for (const Exceeding& e : exceeding_) {
+    // An insertion close by may have replaced the triangle; the next measure tells whether it was enough.
+    if (work(e.triangle).version == e.version) insert(e.error.place, e.error.heightM, e.triangle);
+  }
+  return mesh_->vertices().size() > before;
 }
 
 double MeshRefiner::greatestErrorM() const {
   double greatestM = 0;
   for (const Work& w : work_) {
-    greatestM = std::max({greatestM, w.samplesM, w.edgeM[0], w.edgeM[1], w.edgeM[2], w.measured.errorM});
+    greatestM = std::max({greatestM, w.samplesM, w.postsM, w.edgeM[0], w.edgeM[1], w.edgeM[2]});
   }
   return greatestM;
 }

@@ -18,10 +18,13 @@ class MeshRefiner {
   // The same for the departures along the edges. The grid must cover the mesh.
   void insertAlongEdges(const SampleGrid& grid, double toleranceM);
 
-  // For surfaces too large for one grid: measure each part in turn, then insert where it was found worst. False when
-  // nothing exceeds the tolerance or nothing can be inserted.
+  // For surfaces too large for one grid: measure each part in turn, then insert where the tolerance is exceeded.
+  // Triangles that were measured before are not measured again.
   void beginMeasure();
+  // Whether triangles not measured yet reach into a region.
+  bool needsMeasure(const TileBounds& region) const;
   void measurePart(const SampleGrid& grid, double toleranceM);
+  // False when nothing exceeds the tolerance or nothing can be inserted.
   bool insertMeasured(double toleranceM);
 
   // Greatest departure found so far in the mesh as it is.
@@ -40,7 +43,9 @@ class MeshRefiner {
     double samplesM = 0;                      // of all samples
     std::array<double, 3> edgeM{-1, -1, -1};  // by side; negative: not measured
     uint32_t version = 0;
-    ChordError measured;  // the worst of beginMeasure .. measurePart, of posts and edges
+    double postsM = 0;     // of posts measured part by part
+    ChordError unsampled;  // the worst of these that found no room among the samples
+    bool isMeasured = false;
   };
   struct Ranked {
     double errorM;
@@ -48,9 +53,16 @@ class MeshRefiner {
     uint32_t version;
     bool operator<(const Ranked& o) const { return errorM != o.errorM ? errorM < o.errorM : triangle < o.triangle; }
   };
+  struct Exceeding {
+    ChordError error;
+    int32_t triangle;
+    uint32_t version;
+  };
   Work& work(int32_t triangle) { return work_[static_cast<size_t>(triangle)]; }
   void own(int32_t triangle, int32_t sample);
   void rank(int32_t triangle);
+  void measurePosts(const SampleGrid& grid, double toleranceM);
+  void measureEdge(const SampleGrid& grid, int32_t triangle, size_t side, double toleranceM);
   bool insert(LatLon place, double heightM, int32_t near);
   bool insertOnEdge(const SampleGrid& grid, int32_t triangle, double toleranceM);
 
@@ -62,7 +74,9 @@ class MeshRefiner {
   std::vector<int32_t> pool_;        // samples to be shared out
   std::vector<PlanePoint> rim_;      // of the cavity being filled
   std::vector<Meridian> meridians_;
-  int32_t lastTriangle_ = 0;  // where the last sample was put
+  std::vector<Exceeding> exceeding_;  // edges found by measurePart, one entry a part
+  std::vector<TileBounds> reach_;     // of triangles to be measured
+  int32_t lastTriangle_ = 0;          // where the last sample was put
 };
 
 }  // namespace eye

@@ -14,7 +14,7 @@ namespace {
 
 // Posts in a tile up to which all of them take part in the greedy phase; above it a regular part of them does, and the
 // rest is measured block by block.
-constexpr double kMaxGreedyPosts = 65536;
+constexpr double kMaxGreedyPosts = 131072;
 constexpr double kBlockSide = 256;
 constexpr int kMaxRounds = 24;  // of measuring all blocks; each but the last inserts
 // The greedy phase sees posts and cell centres only, and edges between them are worse by a little.
@@ -96,8 +96,9 @@ double refineInBlocks(const ElevationSurface& surface, const std::vector<SampleB
   for (int round = 1;; ++round) {
     refiner.beginMeasure();
     for (const SampleBlock& block : blocks) {
+      if (!refiner.needsMeasure(block.region)) continue;
       fillGrid(surface, block, kBendShare * toleranceM, grid);
-      refiner.measurePart(grid, toleranceM);
+      refiner.measurePart(grid, targetM);
     }
     if (round == kMaxRounds || mesh.isFull() || !refiner.insertMeasured(targetM)) break;
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geo/frames.h"
+#include "bake/tile_frame.h"
 
 namespace eye {
 namespace {
@@ -78,6 +78,11 @@ void fillGrid(const ElevationSurface& surface, const SampleBlock& block, double 
   const double widthM = radFromDeg(widestGap(grid.lonDeg)) * kSemiMajorM * widestCos;
   grid.bendM = (heightM * heightM + widthM * widthM) / (8.0 * kSemiMinorM);
 
+  grid.curvature.clear();
+  for (const double latDeg : grid.latDeg) {
+    const Parallel p = parallelAt(latDeg);
+    grid.curvature.push_back({meridianRadiusM(p.sinLat), p.primeVerticalM, p.sinLat, p.cosLat});
+  }
   thread_local std::vector<LatLon> places;
   places.clear();
   for (const double latDeg : grid.latDeg) {

@@ -10,8 +10,13 @@ namespace eye {
 // Cells are bilinear. Lines are post lines, the region's borders, and more where those are far apart, so that over a
 // cell the Earth bends by no more than `bendM`.
 struct SampleGrid {
+  // What bends a straight line in geodetic coordinates at a parallel.
+  struct Curvature {
+    double meridianM, primeM, sinLat, cosLat;
+  };
   std::vector<double> latDeg, lonDeg;  // ascending
   std::vector<double> heightM;         // row by row, south first
+  std::vector<Curvature> curvature;    // by row
   double bendM = 0;
 
   double at(size_t row, size_t column) const { return heightM[row * lonDeg.size() + column]; }

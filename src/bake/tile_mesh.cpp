@@ -8,8 +8,8 @@ namespace {
 
 // Of the plane's grid: half of what the triangulation allows, so that interior points may stand out a little.
 constexpr double kGridHalf = 8388608.0;
-// A vertex so few lattice steps beside another gains nothing: rounding is the error there.
-constexpr double kMinGapSteps = 2.0;
+// A vertex nearer to another than this gains nothing: rounding is the error there.
+constexpr double kMinGapSteps = 1.0;
 // Nearer to a pole than this a vertex' latitude and longitude are no linear functions of its displacement by rounding.
 constexpr double kNearPoleDeg = 89.9;
 
