@@ -79,7 +79,7 @@ class TerrainCache {
   std::span<const uint32_t> roots() const { return roots_; }
   std::optional<uint32_t> find(const TileKey& key) const;
   uint64_t frame() const { return frame_; }  // counts calls of beginFrame
-  void beginFrame() { ++frame_; }            // selectChunks calls it
+  void beginFrame() { ++frame_; }            // before each selectChunks; a walk that starts again has one of its own
   size_t size() const { return indexOf_.size(); }
 
   // Insertion and eviction are the pager's. Indices of other nodes stay valid, references do not.
