@@ -105,14 +105,14 @@ Result<void> DatabaseReader::Impl::forEachBetween(int64_t firstCode, int64_t las
     if (key->level() > info.maxLevel) {
       return tl::unexpected(damaged(*key, "its level is above the database's highest"));
     }
-    if (const Result<void> ok = visit(*record); !ok) return ok;
+    if (Result<void> ok = visit(*record); !ok) return ok;
   }
 }
 
 // A code has one leading 1 and three bits a level, so codes in ascending order are coarse levels first; those of level
 // 19 are negative to SQLite and come last.
 Result<void> DatabaseReader::Impl::forEach(const std::function<Result<void>(const ChunkRecord&)>& visit) {
-  if (const Result<void> ok = forEachBetween(0, INT64_MAX, visit); !ok) return ok;
+  if (Result<void> ok = forEachBetween(0, INT64_MAX, visit); !ok) return ok;
   return forEachBetween(INT64_MIN, -1, visit);
 }
 
@@ -166,7 +166,7 @@ Result<void> DatabaseReader::Impl::checkTile(const DatabaseReader& reader, const
 Result<void> DatabaseReader::Impl::verify(const DatabaseReader& reader,
                                           const std::function<void(uint64_t, uint64_t)>& progress) {
   constexpr uint64_t kProgressEvery = 256;
-  if (const Result<void> ok = checkStructure(); !ok) return ok;
+  if (Result<void> ok = checkStructure(); !ok) return ok;
   const Result<int64_t> rows = database.queryInteger("SELECT count(*) FROM chunk");
   if (!rows) return tl::unexpected(rows.error());
   for (int octant = 0; octant < kOctants; ++octant) {
@@ -175,8 +175,8 @@ Result<void> DatabaseReader::Impl::verify(const DatabaseReader& reader,
   }
   const uint64_t total = static_cast<uint64_t>(*rows);
   uint64_t done = 0;
-  const Result<void> walked = forEach([&](const ChunkRecord& record) -> Result<void> {
-    if (const Result<void> ok = checkTile(reader, record.meta); !ok) return ok;
+  Result<void> walked = forEach([&](const ChunkRecord& record) -> Result<void> {
+    if (Result<void> ok = checkTile(reader, record.meta); !ok) return ok;
     if (progress && ++done % kProgressEvery == 0) progress(done, total);
     return {};
   });
@@ -269,8 +269,8 @@ Result<std::vector<DatabaseReader::LevelSummary>> DatabaseReader::levels() const
 
 Result<void> DatabaseReader::verify(const std::function<void(uint64_t, uint64_t)>& progress) const {
   // In one transaction: a bake that goes on meanwhile does not change what is looked at.
-  if (const Result<void> ok = impl_->database.execute("BEGIN"); !ok) return ok;
-  const Result<void> verdict = impl_->verify(*this, progress);
+  if (Result<void> ok = impl_->database.execute("BEGIN"); !ok) return ok;
+  Result<void> verdict = impl_->verify(*this, progress);
   (void)impl_->database.execute("COMMIT");  // of nothing but reading: its failure says nothing about the file
   return verdict;
 }

@@ -102,8 +102,8 @@ Result<void> harden(SqliteConnection& database) {
 Result<void> createSchema(SqliteConnection& database, const DatabaseInfo& info) {
   std::string sql = std::string(kCreatePragmas) + fmt::format("PRAGMA user_version = {}; BEGIN;", kSchemaVersion);
   for (const Table& table : kTables) sql += std::string(table.sql) + ";";
-  if (const Result<void> ok = database.execute(sql.c_str()); !ok) return ok;
-  if (const Result<void> ok = writeInfo(database, info); !ok) return ok;
+  if (Result<void> ok = database.execute(sql.c_str()); !ok) return ok;
+  if (Result<void> ok = writeInfo(database, info); !ok) return ok;
   return database.execute("COMMIT");
 }
 

@@ -54,7 +54,7 @@ Result<void> startLog(SqliteConnection& database) {
 // Puts the log into the file and removes it. A reader at work keeps this from happening; then file and log stay a valid
 // database together, and whoever opens them next for writing joins them.
 Result<void> endLog(SqliteConnection& database) {
-  if (const Result<void> ok = database.execute("PRAGMA wal_checkpoint(TRUNCATE)"); !ok) return ok;
+  if (Result<void> ok = database.execute("PRAGMA wal_checkpoint(TRUNCATE)"); !ok) return ok;
   return database.execute("PRAGMA journal_mode = DELETE");
 }
 
@@ -187,13 +187,13 @@ Result<DatabaseWriter> DatabaseWriter::resume(const std::string& path, const Dat
 Result<void> DatabaseWriter::begin() {
   EYE_CHECK(!impl_->inTransaction || !impl_->database.inTransaction());
   impl_->inTransaction = false;
-  if (const Result<void> ok = impl_->database.execute("BEGIN IMMEDIATE"); !ok) return ok;
+  if (Result<void> ok = impl_->database.execute("BEGIN IMMEDIATE"); !ok) return ok;
   impl_->inTransaction = true;
   return {};
 }
 
 Result<void> DatabaseWriter::commit() {
-  if (const Result<void> ok = impl_->checkTransaction(); !ok) return ok;
+  if (Result<void> ok = impl_->checkTransaction(); !ok) return ok;
   if (const Result<void> ok = impl_->database.execute("COMMIT"); !ok) return impl_->rollBack(ok.error());
   impl_->inTransaction = false;
   return {};
@@ -201,7 +201,7 @@ Result<void> DatabaseWriter::commit() {
 
 Result<void> DatabaseWriter::putChunk(const StoredChunk& chunk) {
   Impl& impl = *impl_;
-  if (const Result<void> ok = impl.checkTransaction(); !ok) return ok;
+  if (Result<void> ok = impl.checkTransaction(); !ok) return ok;
   const TileKey& key = chunk.meta.key;
   Result<void> ok = checkMeta(chunk.meta);
   if (ok && key.level() > impl.info.maxLevel)
@@ -223,7 +223,7 @@ Result<void> DatabaseWriter::putChunk(const StoredChunk& chunk) {
 
 Result<void> DatabaseWriter::setChildren(const TileKey& parent, int childCount) {
   Impl& impl = *impl_;
-  if (const Result<void> ok = impl.checkTransaction(); !ok) return ok;
+  if (Result<void> ok = impl.checkTransaction(); !ok) return ok;
   EYE_CHECK(childCount == 0 || childCount == parent.children().count);
   double errorM = 0;  // the greatest of the children's
   if (childCount > 0) {
@@ -252,7 +252,7 @@ Result<void> DatabaseWriter::setChildren(const TileKey& parent, int childCount) 
       return {};
     }
     errorM = meta.geometricErrorM = std::max(meta.geometricErrorM, errorM);
-    if (const Result<void> ok = impl.write(**record); !ok) return ok;
+    if (Result<void> ok = impl.write(**record); !ok) return ok;
   }
   return {};
 }
@@ -261,7 +261,7 @@ Result<bool> DatabaseWriter::contains(const TileKey& key) const {
   SqliteStatement& get = impl_->getAll;
   get.bindInteger(0, signedCode(key));
   const SqliteReset reset(get);
-  const Result<bool> row = get.step();
+  Result<bool> row = get.step();
   if (!row || !*row) return row;
   const Result<ChunkRecord> record = readRecord(get);
   const auto mesh = get.blob(kRecordColumnCount), imagery = get.blob(kRecordColumnCount + 1);
@@ -276,10 +276,10 @@ Result<std::optional<ChunkMeta>> DatabaseWriter::readMeta(const TileKey& key) co
 
 Result<void> DatabaseWriter::finish() {
   EYE_CHECK(!impl_->inTransaction || !impl_->database.inTransaction());
-  if (const Result<void> ok = begin(); !ok) return ok;
+  if (Result<void> ok = begin(); !ok) return ok;
   impl_->info.complete = true;
   if (const Result<void> ok = writeInfo(impl_->database, impl_->info); !ok) return impl_->rollBack(ok.error());
-  if (const Result<void> ok = commit(); !ok) return ok;
+  if (Result<void> ok = commit(); !ok) return ok;
   return impl_->database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 
