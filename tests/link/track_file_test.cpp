@@ -103,6 +103,16 @@ TEST_CASE("IGC: several days in one file follow their dates") {
   CHECK(track->durationS() == 86401);
 }
 
+TEST_CASE("IGC: two midnights under one date") {
+  std::string text = "HFDTE280214\n";
+  for (const char* time : {"235900", "000100", "120000", "235900", "000100"})
+    text += fmt::format("B{}3712345N00812345EA0010000100\n", time);
+  const auto track = parseIgcTrack(text);
+  REQUIRE(track);
+  CHECK(track->samples().size() == 5);
+  CHECK(track->durationS() == 86400 + 120);
+}
+
 TEST_CASE("IGC: pressure altitude where there is no other") {
   const auto track = parseIgcTrack("B1000003712345S00812345EV0010000000\nB1000013712345S00812345EV-012000000\n");
   REQUIRE(track);
