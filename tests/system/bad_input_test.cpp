@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kOnePicture{"--headless",  "--pose", "46.05,8.05,3000,0,-30,0", "--size", "64x48",
+const std::vector<std::string> kOnePicture{"--headless",  "--pose", "46.015,8.015,2000,0,-30,0", "--size", "64x48",
                                            "--log-level", "error"};
 
 std::vector<std::string> picture(const std::string& database, std::vector<std::string> more = {}) {
@@ -39,9 +39,9 @@ const std::string& tinyDatabase() {
   static const std::string path = [] {
     std::string file = testFile("tiny.eyt");
     const std::string source = testFile("tiny.tif");
-    writeElevation(source, hills(121));
+    writeElevation(source, hills(41));
     fs::remove(file);
-    const ProgramRun bake = runProgram("eyepoint-bake", {"--elevation", source, "--out", file});
+    const ProgramRun bake = runProgram("eyepoint-bake", {"--elevation", source, "--error", "4", "--out", file});
     INFO(bake.err);
     REQUIRE(bake.exitCode == 0);
     return file;
@@ -215,6 +215,7 @@ TEST_CASE("bad input: configuration files") {
   const std::string file = tinyDatabase(), config = testFile("bad.toml");
   const auto refused = [&](const std::string& text, const std::string& pattern) {
     writeText(config, text);
+    INFO("bad.toml: " << text);
     expectFailure("eyepoint", picture(file, {"--config", config}), 2, pattern);
   };
   refused("visibilty = 20000\n", "visibilty.*visibility");
@@ -241,8 +242,9 @@ TEST_CASE("bad input: outputs that cannot be written") {
     expectFailure("eyepoint", picture(file, {option, "/dev/full"}), 1, "/dev/full.*(space|full|write)");
   }
   expectFailure("eyepoint", picture(file, {"--frames-dir", "/proc/frames"}), 1, "/proc/frames");
-  expectFailure("eyepoint-bake", {"--elevation", testFile("tiny.tif"), "--out", "/nonexistent/folder/out.eyt"}, 1,
-                "/nonexistent/folder");
+  expectFailure("eyepoint-bake",
+                {"--elevation", testFile("tiny.tif"), "--out", "/nonexistent/folder/out.eyt", "--log-level", "error"},
+                1, "/nonexistent/folder");
 }
 
 }  // namespace eye::truth

@@ -130,6 +130,23 @@ void checkPoses(const std::string& name, const std::string& database, const std:
 
 }  // namespace
 
+TEST_CASE("cracks: the test itself sees a hole of one pixel") {
+  RasterImage image{kWidth, kHeight, 3, false, false, std::vector<float>(size_t{3} * kWidth * kHeight, 90)};
+  const auto setMagenta = [&](int row, int column) {
+    const auto pixel = static_cast<size_t>(row * kWidth + column), plane = static_cast<size_t>(kWidth * kHeight);
+    image.values[pixel] = image.values[2 * plane + pixel] = 255;
+    image.values[plane + pixel] = 0;
+  };
+  const EyePose down{{49, 20, 5000}, 30, -60, 20}, level{{49, 20, 5000}, 30, 0, 0};
+  CHECK(findHoles(image, down).belowHorizon == 0);
+  setMagenta(40, 100);  // far above the horizon of the level view
+  CHECK(findHoles(image, down).belowHorizon == 1);
+  CHECK(findHoles(image, level).belowHorizon == 0);
+  CHECK(findHoles(image, level).belowTerrain == 1);  // a mountain that hangs in the air above it
+  setMagenta(250, 100);
+  CHECK(findHoles(image, level).belowHorizon == 1);
+}
+
 TEST_CASE("cracks: none in the Tatra, from treetops to orbit") {
   const std::string database = carpathiaDatabase();
   if (database.empty()) return;
