@@ -2,16 +2,24 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.h"
+#include "shared/atmosphere.h"
 
-layout(set = 0, binding = EYE_BIND_DRAWS, scalar) readonly buffer DrawBlock { DrawData draws[]; };
-
-layout(location = 0) in ivec4 inPositionSkirt;  // lattice steps; w: bits of the sides a skirt's lower rim hangs from
-layout(location = 1) in vec2 inParam;           // (s, t)
-layout(location = 2) in vec2 inNormal;          // octahedral, ecef
+layout(location = EYE_AT_POSITION_SKIRT) in ivec4 inPositionSkirt;  // lattice steps; w: sides a skirt's lower rim hangs from
+layout(location = EYE_AT_PARAM) in vec2 inParam;                    // (s, t)
+layout(location = EYE_AT_NORMAL) in vec2 inNormal;                  // octahedral, ecef
+// Of the chunk, see DrawData.
+layout(location = EYE_AT_ORIGIN) in ivec3 inOriginMinusEyeCell;
+layout(location = EYE_AT_STEP) in float inStepM;
+layout(location = EYE_AT_FRACTION_SKIRT) in vec4 inEyeFractionSkirtM;
+layout(location = EYE_AT_UP) in vec3 inUp_ecef;
+layout(location = EYE_AT_LAYER) in uint inLayer;
+layout(location = EYE_AT_OUTWARD) in vec3 inOutward_ecef[4];
+layout(location = EYE_AT_TEXTURE_MAP) in vec4 inTextureMap;
 
 layout(location = 0) out vec2 outTexture;
-layout(location = 1) out vec2 outLight;  // sunlight, skylight: 0..1
-layout(location = 2) flat out uint outLayer;
+layout(location = 1) out vec4 outLight;  // sunlight, skylight, haze per metre, how far the haze is lit
+layout(location = 2) out vec3 outPosition_ecef;
+layout(location = 3) flat out uint outLayer;
 
 vec3 normalFromOctahedral(vec2 o) {
   vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
@@ -22,16 +30,14 @@ vec3 normalFromOctahedral(vec2 o) {
 }
 
 void main() {
-  DrawData chunk = draws[gl_InstanceIndex];
   // Integers up to here, so that two chunks of one level get the same bits for a point that they share.
-  ivec3 cell_ecef = inPositionSkirt.xyz + chunk.originMinusEyeCell;
-  precise vec3 position_ecef = vec3(cell_ecef) * chunk.stepM - chunk.eyeFractionM;
+  ivec3 cell_ecef = inPositionSkirt.xyz + inOriginMinusEyeCell;
+  precise vec3 position_ecef = vec3(cell_ecef) * inStepM - inEyeFractionSkirtM.xyz;
   if (inPositionSkirt.w != 0) {
-    vec3 outward = vec3(0.0);
-    for (int side = 0; side < 4; ++side) {
-      if ((inPositionSkirt.w & (1 << side)) != 0) outward += chunk.outward_ecef[side].xyz;
-    }
-    position_ecef += chunk.skirtDepthM * (EYE_SKIRT_FLARE * outward - chunk.up_ecef);
+    vec4 hangs = vec4(notEqual(inPositionSkirt.wwww & ivec4(1, 2, 4, 8), ivec4(0)));
+    vec3 outward = inOutward_ecef[0] * hangs.x + inOutward_ecef[1] * hangs.y + inOutward_ecef[2] * hangs.z +
+                   inOutward_ecef[3] * hangs.w;
+    position_ecef += inEyeFractionSkirtM.w * (EYE_SKIRT_FLARE * outward - inUp_ecef);
   }
   precise vec4 position_clip = frame.clipFromEcef * vec4(position_ecef, 1.0);
   gl_Position = position_clip;
@@ -40,10 +46,14 @@ void main() {
   vec3 up = normalize(frame.up_ecef.xyz * frame.up_eye.w + position_ecef * (1.0 / EYE_EARTH_RADIUS_M));
   vec3 normal = normalFromOctahedral(inNormal);
   float sunHeight = dot(up, frame.sun_ecef.xyz);
-  float day = smoothstep(-0.02, 0.06, sunHeight);
-  float dusk = smoothstep(-0.20, 0.12, sunHeight);
-  outLight.x = max(dot(normal, frame.sun_ecef.xyz), 0.0) * day;
-  outLight.y = (0.6 + 0.4 * dot(normal, up)) * (0.16 + 0.84 * dusk);
-  outTexture = inParam * chunk.textureScale + chunk.textureOffset;
-  outLayer = chunk.textureLayer;
+  float lit = skyLit(sunHeight);
+  // The sun's disc rises over two degrees; the sky lights a slope by how much of it the slope sees; moon and stars
+  // leave a third of that, so that terrain stays faintly visible.
+  outLight.x = max(dot(normal, frame.sun_ecef.xyz), 0.0) * smoothstep(-0.02, 0.06, sunHeight);
+  outLight.y = (0.6 + 0.4 * dot(normal, up)) * (0.3 + 0.7 * lit);
+  outLight.z = hazePerMetre(position_ecef);
+  outLight.w = lit;
+  outPosition_ecef = position_ecef;
+  outTexture = inParam * inTextureMap.xy + inTextureMap.zw;
+  outLayer = inLayer;
 }

@@ -1,4 +1,5 @@
 // Sky and haze: closed forms over an atmosphere that thins out exponentially. GLSL only; needs `frame`.
+// Cheap on purpose: on a CPU device a pixel of sky costs four exponentials, one of terrain a single one.
 
 // Column of air along a ray that leaves upwards at sine `rise` from where the air is as dense as at the ground, in units
 // of the vertical column. Chapman's function, near enough: 35 along the level, 1 / rise higher up.
@@ -8,62 +9,68 @@ float columnAbove(float rise) { return EYE_LEVEL_COLUMN / (EYE_LEVEL_COLUMN * ri
 // missed it). `rise` is the sine of its elevation.
 float skyColumn(float rise) {
   float eyeHeightM = max(frame.up_ecef.w, 0.0);
-  float dense = exp(-eyeHeightM / EYE_AIR_SCALE_M);
-  if (rise >= 0.0) return dense * columnAbove(rise);
+  float outwards = frame.sun_eye.w * columnAbove(abs(rise));
   // Falling, the ray is densest where it passes nearest to the Earth: r (1 - cos) below the eye, without cancellation.
   float drop = rise * rise / (1.0 + sqrt(max(1.0 - rise * rise, 0.0)));
   float lowestM = max(eyeHeightM - (EYE_EARTH_RADIUS_M + eyeHeightM) * drop, 0.0);
-  return max(2.0 * EYE_LEVEL_COLUMN * exp(-lowestM / EYE_AIR_SCALE_M) - dense * columnAbove(-rise), 0.0);
+  float through = 2.0 * EYE_LEVEL_COLUMN * exp(-lowestM / EYE_AIR_SCALE_M) - outwards;
+  return rise >= 0.0 ? outwards : max(through, 0.0);
 }
 
-// Colour of so much air in a direction: `towardsSun` is the cosine between the ray and the sun.
-vec3 airColour(float column, float towardsSun) {
-  // Vertical optical depths of air for red, green, blue (Rayleigh at 680, 550, 440 nm), and what the haze adds. Times
-  // 3.6: colours here are as displayed, not linear, and dim light is displayed brighter.
-  vec3 depth = (vec3(0.046, 0.108, 0.265) * 3.6 + frame.night.w) * column;
-  vec3 lit = frame.zenith.rgb * (1.0 - exp(-depth));
-  float forward = max(towardsSun, 0.0);
-  float forward4 = forward * forward * forward * forward;
-  float glow = 0.35 * forward4 + 0.65 * forward4 * forward4 * forward4 * forward4;
-  return lit + frame.glow.rgb * (glow * (1.0 - exp(-0.12 * column))) + frame.night.rgb * (1.0 - exp(-0.3 * column));
+// How far the sky over a place is lit, by the sine of the sun's height there: day 1, the end of dusk 0.
+float skyLit(float sunHeight) { return smoothstep(-0.25, 0.10, sunHeight); }
+
+// Brightness of the glow by the cosine between ray and sun: a wide and a narrow lobe.
+float glowShape(float towardsSun) {
+  float f = max(towardsSun, 0.0);
+  float f2 = f * f, f4 = f2 * f2, f8 = f4 * f4;
+  return 0.35 * f4 + 0.65 * f8 * f8;
 }
 
-vec3 horizonColour(float towardsSun) { return airColour(EYE_LEVEL_COLUMN, towardsSun); }
+// The colour that haze has, and the sky at the horizon: distant ridges melt into it.
+vec3 hazeColour(float towardsSun, float lit) {
+  return (frame.horizon.rgb + frame.horizonGlow.rgb * glowShape(towardsSun)) * lit + frame.night.rgb;
+}
 
 vec3 skyColour(vec3 ray_eye) {
   float rise = dot(ray_eye, frame.up_eye.xyz);
   float towardsSun = dot(ray_eye, frame.sun_eye.xyz);
-  float column = skyColumn(rise);
-  vec3 colour = airColour(column, towardsSun);
-  // The disc is half a degree wide; its rim is softened over a tenth of that. 1 - cos keeps its digits in floats.
+  float sunHeight = dot(frame.up_eye.xyz, frame.sun_eye.xyz);
+  // A falling ray's air is where it passes nearest to the Earth: seen from space, that may have night or day of its own.
+  if (rise < 0.0) sunHeight = (sunHeight - rise * towardsSun) * inversesqrt(max(1.0 - rise * rise, 1e-6));
+  float lit = skyLit(sunHeight);
+  vec3 scattered = 1.0 - exp(-frame.airDepth.rgb * skyColumn(rise));
+  // The disc is half a degree wide; its rim is softened over a tenth of that. The distance of unit vectors keeps the
+  // digits that 1 - cos would lose in floats.
   vec3 offset = ray_eye - frame.sun_eye.xyz;
   float disc = 1.0 - smoothstep(1.6e-5, 2.2e-5, dot(offset, offset));
-  float clear = exp(-0.02 * column) * step(-0.5, frame.glow.w);
-  return colour + frame.glow.w * disc * clear;
+  return frame.deepSky.rgb * lit * scattered + (frame.glow.rgb * (glowShape(towardsSun) * lit) + frame.night.rgb) * scattered.g +
+         frame.glow.w * disc * (1.0 - 0.7 * scattered.r);
 }
 
-// Share of light that haze takes away over `distanceM` along a ray from the eye to ground at that distance.
-float hazeBetween(float rise, float distanceM) {
+// Optical depth of the haze per metre of the straight way from the eye to a point of the ground, mean over the way.
+float hazePerMetre(vec3 position_ecef) {
+  float distanceM = max(length(position_ecef), 1e-3);
+  float rise = dot(position_ecef, frame.up_ecef.xyz) / distanceM;
   float eyeHeightM = frame.up_ecef.w;
   float inAirM = distanceM;
-  float topM = eyeHeightM;
+  float topM = min(eyeHeightM, EYE_AIR_TOP_M);
+  // The point's height, with the Earth's curvature.
+  float pointM = eyeHeightM + distanceM * rise + distanceM * distanceM * (1.0 - rise * rise) * (0.5 / EYE_EARTH_RADIUS_M);
   if (eyeHeightM > EYE_AIR_TOP_M) {
-    // From space: only the part below the top of the air counts. Distances in Earth radii, for the floats' sake.
+    // From space only the way below the top of the air counts. In Earth radii, for the floats' sake.
     float r = frame.up_eye.w;
     float top = 1.0 + EYE_AIR_TOP_M / EYE_EARTH_RADIUS_M;
     float along = -r * rise;
     float chord = sqrt(max(along * along - (r - top) * (r + top), 0.0));
     inAirM = clamp(distanceM - (along - chord) * EYE_EARTH_RADIUS_M, 0.0, distanceM);
-    topM = EYE_AIR_TOP_M;
+    pointM = 0.0;
   }
-  // The ground's height from the eye's, with the Earth's curvature.
-  float groundM = eyeHeightM > EYE_AIR_TOP_M ? 0.0 : eyeHeightM + distanceM * rise +
-      distanceM * distanceM * (1.0 - rise * rise) * (0.5 / EYE_EARTH_RADIUS_M);
-  // Mean of exp(-h / H) between the two heights: exact for a straight line.
-  float top_H = topM / EYE_AIR_SCALE_M, ground_H = groundM / EYE_AIR_SCALE_M;
-  float between = top_H - ground_H;
-  float mean = abs(between) < 0.01 ? exp(-0.5 * (top_H + ground_H)) : (exp(-ground_H) - exp(-top_H)) / between;
-  return 1.0 - exp(-frame.sunLight.w * mean * inAirM);
+  // Mean density between the two heights: exact for an exponential; the trapezoid where the quotient loses its digits.
+  float between = (topM - pointM) / EYE_AIR_SCALE_M;
+  float density = exp(-pointM / EYE_AIR_SCALE_M);
+  float mean = abs(between) < 0.02 ? 0.5 * (density + frame.sun_ecef.w) : (density - frame.sun_ecef.w) / between;
+  return frame.sunLight.w * mean * inAirM / distanceM;
 }
 
 // Half a step of 8 bits, up or down, from a pattern without structure (Jimenez 2014): no bands in sky and haze.

@@ -8,22 +8,24 @@
 
 // Bindings of the one descriptor set.
 #define EYE_BIND_FRAME 0
-#define EYE_BIND_DRAWS 1
-#define EYE_BIND_TEXEL_SIZES 2
-#define EYE_BIND_TEXTURES 3
-#define EYE_BIND_DEPTH 4
-#define EYE_BIND_ATTRIBUTES 5
+#define EYE_BIND_TEXTURES 1
 
-// Bits of the slim attribute target's second word: texture layer, sunlight, skylight.
-#define EYE_LAYER_BITS 11
-#define EYE_SUN_BITS 11
-#define EYE_SKY_BITS 10
-#define EYE_MAX_LAYERS 2048
+// Locations of the vertex attributes: of a vertex, and of the chunk that it belongs to (see DrawData).
+#define EYE_AT_POSITION_SKIRT 0
+#define EYE_AT_PARAM 1
+#define EYE_AT_NORMAL 2
+#define EYE_AT_ORIGIN 3
+#define EYE_AT_STEP 4
+#define EYE_AT_FRACTION_SKIRT 5
+#define EYE_AT_UP 6
+#define EYE_AT_LAYER 7
+#define EYE_AT_OUTWARD 8
+#define EYE_AT_TEXTURE_MAP 12
 
 // How far a skirt's lower rim moves outwards, as a share of its depth: enough to cover what two edges differ horizontally.
 #define EYE_SKIRT_FLARE 0.5
 
-// Heights over which the air thins out by e: air itself, which also carries the haze.
+// Height over which the air, and the haze that it carries, thins out by e.
 #define EYE_AIR_SCALE_M 8000.0
 // A ray counts as in the air below this height: 7.5 scale heights, 0.06 % of the air lies above.
 #define EYE_AIR_TOP_M 60000.0

@@ -129,11 +129,7 @@ std::string whatLacks(const vk::raii::Instance& instance, const vk::raii::Physic
   need(has.get<vk::PhysicalDeviceVulkan13Features>().synchronization2, "synchronization2");
   need(has.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering, "dynamicRendering");
   const auto depth = device.getFormatProperties(vk::Format::eD32Sfloat).optimalTilingFeatures;
-  need(bool(depth & vk::FormatFeatureFlagBits::eDepthStencilAttachment) &&
-           bool(depth & vk::FormatFeatureFlagBits::eSampledImage),
-       "a 32-bit float depth format that can be sampled");
-  const auto attributes = device.getFormatProperties(vk::Format::eR32G32Uint).optimalTilingFeatures;
-  need(bool(attributes & vk::FormatFeatureFlagBits::eColorAttachment), "R32G32_UINT targets");
+  need(bool(depth & vk::FormatFeatureFlagBits::eDepthStencilAttachment), "a 32-bit float depth format");
   need(findQueueFamily(instance, device, present).has_value(),
        present ? "a queue that draws and presents" : "a graphics queue");
   return lacks;

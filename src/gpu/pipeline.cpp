@@ -9,26 +9,14 @@ vk::raii::ShaderModule createModule(const GpuDevice& gpu, std::span<const uint32
   return {gpu.device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data())};
 }
 
-std::vector<vk::SpecializationMapEntry> constantEntries(size_t count) {
-  std::vector<vk::SpecializationMapEntry> entries;
-  for (uint32_t i = 0; i < count; ++i) {
-    entries.push_back({i, i * static_cast<uint32_t>(sizeof(int32_t)), sizeof(int32_t)});
-  }
-  return entries;
-}
-
 }  // namespace
 
 vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
                                   const PipelineSpec& spec) {
   const vk::raii::ShaderModule vertex = createModule(gpu, spec.vertexSpirv);
   const vk::raii::ShaderModule fragment = createModule(gpu, spec.fragmentSpirv);
-  const std::vector<vk::SpecializationMapEntry> entries = constantEntries(spec.constants.size());
-  const vk::SpecializationInfo constants(static_cast<uint32_t>(entries.size()), entries.data(),
-                                         spec.constants.size_bytes(), spec.constants.data());
-  const std::array stages{
-      vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main"),
-      vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main", &constants)};
+  const std::array stages{vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main"),
+                          vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main")};
 
   vk::PipelineVertexInputStateCreateInfo vertexInput;
   vertexInput.setVertexBindingDescriptions(spec.bindings).setVertexAttributeDescriptions(spec.attributes);
@@ -37,9 +25,10 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
   vk::PipelineRasterizationStateCreateInfo raster;
   raster.setCullMode(spec.cull).setFrontFace(vk::FrontFace::eCounterClockwise).setLineWidth(1.0f);
   const vk::PipelineMultisampleStateCreateInfo samples({}, vk::SampleCountFlagBits::e1);
-  const bool depthUsed = spec.depthFormat != vk::Format::eUndefined;
-  static_assert(EYE_REVERSED_Z == 1, "the depth test below and the cleared depth belong together");
-  const vk::PipelineDepthStencilStateCreateInfo depth({}, depthUsed, depthUsed, vk::CompareOp::eGreater);
+  static_assert(EYE_REVERSED_Z == 1, "the comparisons below and the cleared depth belong together");
+  const vk::PipelineDepthStencilStateCreateInfo depth(
+      {}, spec.depth != DepthUse::none, spec.depth == DepthUse::testAndWrite,
+      spec.depth == DepthUse::whereNothing ? vk::CompareOp::eEqual : vk::CompareOp::eGreater);
   vk::PipelineColorBlendAttachmentState target;
   target.setColorWriteMask(vk::ColorComponentFlagBits::eR | vk::ColorComponentFlagBits::eG |
                            vk::ColorComponentFlagBits::eB | vk::ColorComponentFlagBits::eA);

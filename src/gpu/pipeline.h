@@ -8,15 +8,21 @@
 
 namespace eye {
 
+enum class DepthUse {
+  none,
+  testAndWrite,  // nearer pixels win
+  whereNothing,  // only where the cleared depth still stands; writes no depth
+};
+
 struct PipelineSpec {
   std::span<const uint32_t> vertexSpirv, fragmentSpirv;
   vk::PipelineLayout layout;
   std::vector<vk::VertexInputBindingDescription> bindings;
   std::vector<vk::VertexInputAttributeDescription> attributes;
   vk::Format colourFormat = vk::Format::eUndefined;
-  vk::Format depthFormat = vk::Format::eUndefined;       // undefined: neither tested nor written
+  vk::Format depthFormat = vk::Format::eUndefined;  // of the pass, used or not
+  DepthUse depth = DepthUse::none;
   vk::CullModeFlags cull = vk::CullModeFlagBits::eNone;  // counterclockwise as seen on the screen is the front
-  std::span<const int32_t> constants;                    // specialization constants 0, 1, ... of the fragment shader
 };
 
 vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const PipelineSpec& spec);

@@ -22,20 +22,16 @@ void append(std::span<vk::DrawIndexedIndirectCommand> commands, const ChunkDraw&
 }  // namespace
 
 DrawLists::DrawLists(const GpuDevice& gpu) {
-  texelSizes_ =
-      createBuffer(gpu, EYE_MAX_LAYERS * sizeof(float), vk::BufferUsageFlagBits::eStorageBuffer, MemoryUse::upload);
-  std::fill_n(texelSizes_.as<float>().begin(), EYE_MAX_LAYERS, 1.0f);
   reserve(gpu, kFirstCapacity);
 }
 
-bool DrawLists::reserve(const GpuDevice& gpu, size_t chunks) {
-  if (chunks <= capacity_) return false;
+void DrawLists::reserve(const GpuDevice& gpu, size_t chunks) {
+  if (chunks <= capacity_) return;
+  using Use = vk::BufferUsageFlagBits;
   capacity_ = std::bit_ceil(chunks);
-  draws_ = createBuffer(gpu, capacity_ * sizeof(shader::DrawData), vk::BufferUsageFlagBits::eStorageBuffer,
-                        MemoryUse::upload);
+  draws_ = createBuffer(gpu, capacity_ * sizeof(shader::DrawData), Use::eVertexBuffer, MemoryUse::upload);
   commands_ = createBuffer(gpu, capacity_ * kCommandsPerChunk * sizeof(vk::DrawIndexedIndirectCommand),
-                           vk::BufferUsageFlagBits::eIndirectBuffer, MemoryUse::upload);
-  return true;
+                           Use::eIndirectBuffer, MemoryUse::upload);
 }
 
 DrawCounts DrawLists::write(std::span<const ChunkDraw> draws, const Vec3d& eyeEcefM, int textureSize) {
@@ -43,12 +39,9 @@ DrawCounts DrawLists::write(std::span<const ChunkDraw> draws, const Vec3d& eyeEc
   DrawCounts counts;
   const auto records = draws_.as<shader::DrawData>();
   const auto commands = commands_.as<vk::DrawIndexedIndirectCommand>();
-  const auto texelSizes = texelSizes_.as<float>();
   for (uint32_t i = 0; i < draws.size(); ++i) {
     const ChunkDraw& draw = draws[i];
-    EYE_CHECK(draw.textureLayer < EYE_MAX_LAYERS);
     records[i] = drawData(draw, eyeEcefM, textureSize);
-    texelSizes[draw.textureLayer] = draw.texelM;
     append(commands, draw, draw.gpu.firstIndex, draw.gpu.indexCount, i, counts);
     counts.vertices += draw.gpu.vertexCount;
   }

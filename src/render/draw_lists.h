@@ -16,19 +16,17 @@ struct DrawCounts {
 class DrawLists {
  public:
   explicit DrawLists(const GpuDevice& gpu);
-  // Makes room for so many chunks; true where the buffers are new and descriptors must be written again. Nothing may be
-  // in flight.
-  bool reserve(const GpuDevice& gpu, size_t chunks);
+  // Makes room for so many chunks. Nothing may be in flight.
+  void reserve(const GpuDevice& gpu, size_t chunks);
   // Surfaces first, front to back, then the skirts, most of which are hidden then.
   DrawCounts write(std::span<const ChunkDraw> draws, const Vec3d& eyeEcefM, int textureSize);
 
   const GpuBuffer& draws() const { return draws_; }
   const GpuBuffer& commands() const { return commands_; }
-  const GpuBuffer& texelSizes() const { return texelSizes_; }
 
  private:
   size_t capacity_ = 0;
-  GpuBuffer draws_, commands_, texelSizes_;
+  GpuBuffer draws_, commands_;
 };
 
 }  // namespace eye

@@ -11,8 +11,13 @@ using glm::vec4;
 
 // Contrast falls to 5 % over the meteorological visibility (Koschmieder).
 constexpr double kKoschmieder = 2.996;
-// Haze lies lower than the air (1.2 km against 8 km), which shows in the sky but hardly between low ridges.
-constexpr double kSkyHazeShare = 0.15;
+// Real haze lies lower than the air (1.2 km against 8 km). It shows in the sky and from space, hardly between ridges,
+// so there the haze counts as this share.
+constexpr double kHazeShare = 0.15, kHazeShareFromSpace = 0.35;
+// Optical depths of air, red, green, blue (Rayleigh at 680, 550, 440 nm). The sky takes them times 3.6: its colours are
+// as displayed, where dim light is brighter.
+const glm::dvec3 kAirDepth(0.046, 0.108, 0.265);
+constexpr double kDisplayed = 3.6;
 constexpr double kEarthRadiusM = EYE_EARTH_RADIUS_M;
 
 double smoothstep(double from, double to, double x) {
@@ -34,50 +39,55 @@ glm::mat4 clipFromEcef(const View& view) {
   return glm::mat4(clipFromEye * glm::dmat4(view.eyeFromEcef));
 }
 
-// Colours as displayed, by the sun's height. `rise`: sine of its elevation; `air`: the eye's air density over the
-// ground's.
-void setLight(double rise, double air, double dipRad, shader::FrameData& frame) {
+// Colours by the sun's height. `rise`: sine of its elevation at the eye; `air`: density at the eye over the ground's.
+void setLight(double rise, double air, double hazeDepth, shader::FrameData& frame) {
   // Air takes blue first: the lower the sun, the longer its way through it, the redder its light.
   const double column = air * EYE_LEVEL_COLUMN / (EYE_LEVEL_COLUMN * std::max(rise, 0.0) + 1);
-  const glm::dvec3 through = glm::sqrt(glm::exp(-glm::dvec3(0.046, 0.108, 0.265) * column * 0.5));
-  const double lit = smoothstep(-0.25, 0.10, rise + dipRad);
-  const double low = 1 - smoothstep(0.0, 0.35, std::abs(rise));
+  const glm::dvec3 through = glm::sqrt(glm::exp(-kAirDepth * column * 0.5));
   frame.sunLight = vec4(vec3(0.92 * through), frame.sunLight.w);
-  frame.skyLight = vec4(vec3(0.36f, 0.39f, 0.45f), frame.skyLight.w);
-  const glm::dvec3 skyByDay(0.76, 0.85, 0.95), skyByDusk(0.66, 0.60, 0.66);
-  frame.zenith = vec4(vec3(glm::mix(skyByDay, skyByDusk, low) * lit), static_cast<float>(lit));
-  const double dusk = smoothstep(-0.20, -0.02, rise + dipRad);
-  const glm::dvec3 glow = glm::mix(glm::dvec3(0.22, 0.19, 0.13), glm::dvec3(0.50, 0.26, 0.06), low * air);
-  frame.glow = vec4(vec3(glow * dusk), 1.0f);
-  frame.night = vec4(0.035f, 0.045f, 0.08f, frame.night.w);
+  frame.skyLight = vec4(0.36f, 0.39f, 0.45f, 0.0f);
+
+  const double low = (1 - smoothstep(0.0, 0.35, std::abs(rise))) * air;
+  const glm::dvec3 byDay(0.76, 0.85, 0.95), byDusk(0.66, 0.60, 0.66);
+  const glm::dvec3 deepSky = glm::mix(byDay, byDusk, low);
+  const glm::dvec3 glow = glm::mix(glm::dvec3(0.22, 0.19, 0.13), glm::dvec3(0.50, 0.26, 0.06), low);
+  const glm::dvec3 airDepth = kAirDepth * kDisplayed + hazeDepth;
+  const glm::dvec3 atHorizon = 1.0 - glm::exp(-airDepth * double(EYE_LEVEL_COLUMN));
+  const glm::dvec3 night(0.05, 0.06, 0.10);
+  frame.airDepth = vec4(vec3(airDepth), 0.0f);
+  frame.deepSky = vec4(vec3(deepSky), 0.0f);
+  frame.glow = vec4(vec3(glow), 1.0f);
+  frame.horizon = vec4(vec3(deepSky * atHorizon), 0.0f);
+  frame.horizonGlow = vec4(vec3(glow * atHorizon.g), 0.0f);
+  frame.night = vec4(vec3(night * atHorizon.g), 0.0f);
 }
 
 }  // namespace
 
-shader::FrameData frameData(const FrameInput& input, int textureSize) {
+shader::FrameData frameData(const FrameInput& input) {
   const View& view = input.view;
   const Frustum& f = view.frustum;
   const Geodetic eye = geodeticFromEcef(view.eyeEcefM);
   const Vec3d upEcef = upAt(eye.latDeg, eye.lonDeg);
   const Vec3d sunEcef = glm::normalize(input.lighting.sunDirectionEcef);
   const double radiusM = kEarthRadiusM + eye.altM;
-  const double extinction = kKoschmieder / std::max(input.lighting.visibilityM, 1.0);
+  const double atGround = kKoschmieder / std::max(input.lighting.visibilityM, 1.0);
+  const double fromSpace = smoothstep(20000, EYE_AIR_TOP_M, eye.altM);
+  // In front of a flat background there is no haze either.
+  const double extinction = input.background ? 0 : atGround * (1 + (kHazeShareFromSpace - 1) * fromSpace);
+  const auto density = [](double heightM) { return std::exp(-std::max(heightM, 0.0) / EYE_AIR_SCALE_M); };
 
   shader::FrameData frame;
   frame.clipFromEcef = clipFromEcef(view);
-  frame.rayCentre_eye = vec4((f.tanLeft + f.tanRight) / 2, -(f.tanTop + f.tanBottom) / 2, 1, 0);
-  frame.rayHalf_eye = vec4((f.tanRight - f.tanLeft) / 2, (f.tanTop - f.tanBottom) / 2, 0, 0);
+  frame.ray_eye = vec4((f.tanLeft + f.tanRight) / 2, -(f.tanTop + f.tanBottom) / 2, (f.tanRight - f.tanLeft) / 2,
+                       (f.tanTop - f.tanBottom) / 2);
   frame.up_eye = vec4(vec3(view.eyeFromEcef * upEcef), static_cast<float>(radiusM / kEarthRadiusM));
   frame.up_ecef = vec4(vec3(upEcef), static_cast<float>(eye.altM));
-  frame.sun_eye = vec4(vec3(view.eyeFromEcef * sunEcef), static_cast<float>(pixelsPerRadian(view)));
-  frame.sun_ecef = vec4(vec3(sunEcef), static_cast<float>(f.nearM));
+  frame.sun_eye = vec4(vec3(view.eyeFromEcef * sunEcef), static_cast<float>(density(eye.altM)));
+  frame.sun_ecef =
+      vec4(vec3(sunEcef), static_cast<float>(std::exp(-std::min(eye.altM, EYE_AIR_TOP_M) / EYE_AIR_SCALE_M)));
   frame.sunLight.w = static_cast<float>(extinction);
-  frame.skyLight.w = static_cast<float>(textureSize);
-  frame.night.w = static_cast<float>(kSkyHazeShare * extinction * EYE_AIR_SCALE_M);
-  const double air = std::exp(-std::max(eye.altM, 0.0) / EYE_AIR_SCALE_M);
-  const double dipRad = std::acos(std::min(1.0, kEarthRadiusM / radiusM));
-  setLight(glm::dot(upEcef, sunEcef), air, dipRad, frame);
-  frame.background = input.background ? vec4(*input.background, 1.0f) : vec4(0.0f);
+  setLight(glm::dot(upEcef, sunEcef), density(eye.altM), kHazeShare * atGround * EYE_AIR_SCALE_M, frame);
   return frame;
 }
 
@@ -98,9 +108,9 @@ shader::DrawData drawData(const ChunkDraw& draw, const Vec3d& eyeEcefM, int text
   }
   data.stepM = static_cast<float>(draw.stepM);
   data.skirtDepthM = draw.skirtDepthM;
-  data.up_ecef = draw.upEcef;
+  data.upEcef = draw.upEcef;
   data.textureLayer = draw.textureLayer;
-  for (size_t side = 0; side < 4; ++side) data.outward_ecef[side] = vec4(draw.outwardEcef[side], 0.0f);
+  for (size_t side = 0; side < 4; ++side) data.outwardEcef[side] = vec4(draw.outwardEcef[side], 0.0f);
   const float texels = static_cast<float>(textureSize);
   const float shrink = (texels - 1) / texels;
   data.textureScale = draw.textureScale * shrink;

@@ -6,7 +6,7 @@
 
 namespace eye {
 
-shader::FrameData frameData(const FrameInput& input, int textureSize);
+shader::FrameData frameData(const FrameInput& input);
 
 // `textureSize`: side of a layer in texels; the outermost texels' centres lie on the edges of (s, t).
 shader::DrawData drawData(const ChunkDraw& draw, const Vec3d& eyeEcefM, int textureSize);

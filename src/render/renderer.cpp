@@ -8,7 +8,7 @@
 #include "gpu/timestamps.h"
 #include "render/frame_data.h"
 #include "render/overlay.h"
-#include "render/passes.h"
+#include "render/scene_pass.h"
 #include "render/warm_up.h"
 #include "telemetry/trace.h"
 
@@ -23,7 +23,7 @@ struct Renderer::Impl {
   vk::raii::PipelineCache cache{nullptr};
   std::unique_ptr<ChunkPools> pools;
   std::unique_ptr<DrawLists> lists;
-  std::unique_ptr<Passes> passes;
+  std::unique_ptr<ScenePass> scene;
   std::unique_ptr<Overlay> overlay;
   std::unique_ptr<Timestamps> timestamps;
   Targets targets;
@@ -73,12 +73,11 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     const std::string cachePath = pipelineCachePath(device);
     impl->cache = loadPipelineCache(device, cachePath);
     GLFWwindow* window = options.window ? impl->window->handle() : nullptr;
-    impl->passes = std::make_unique<Passes>(device, impl->cache, impl->colourFormat());
+    impl->scene = std::make_unique<ScenePass>(device, impl->cache, impl->colourFormat());
     impl->lists = std::make_unique<DrawLists>(device);
     impl->overlay = std::make_unique<Overlay>(device, impl->cache, impl->colourFormat(), window);
     impl->timestamps = std::make_unique<Timestamps>(device);
-    impl->passes->bindDraws(device, *impl->lists);
-    impl->passes->bindTextures(device, impl->pools->textures());
+    impl->scene->bindTextures(device, impl->pools->textures());
     const vk::CommandBufferAllocateInfo one(*device.commandPool, vk::CommandBufferLevel::ePrimary, 1);
     impl->commands = std::move(vk::raii::CommandBuffers(device.device, one).front());
     impl->finished = vk::raii::Fence(device.device, vk::FenceCreateInfo{});
@@ -115,8 +114,8 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
   try {
     Impl& impl = *impl_;
     impl.resizeTargets(input.view.widthPx, input.view.heightPx);
-    if (impl.lists->reserve(*impl.gpu, input.draws.size())) impl.passes->bindDraws(*impl.gpu, *impl.lists);
-    impl.passes->frame() = frameData(input, impl.options.textureSize);
+    impl.lists->reserve(*impl.gpu, input.draws.size());
+    impl.scene->frame() = frameData(input);
     const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
     std::optional<uint32_t> shown;
     if (impl.swapchain != nullptr) shown = impl.swapchain->acquire(*impl.gpu);
@@ -148,7 +147,6 @@ void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
   targets = {};  // the old ones first: both at once may not fit
   drawn = false;
   targets = createTargets(*gpu, widthPx, heightPx, colourFormat());
-  passes->bindTargets(*gpu, targets);
   overlay->bindTargets(*gpu, targets);
 }
 
@@ -158,10 +156,8 @@ void Renderer::Impl::record(const FrameInput& input, uint32_t commandCount, std:
   timestamps->begin(commands);
   pools->recordUploads(commands);
   timestamps->mark(commands, "upload");
-  passes->recordGeometry(commands, *gpu, targets, *pools, *lists, commandCount);
-  timestamps->mark(commands, "geometry");
-  passes->recordShade(commands, targets);
-  timestamps->mark(commands, "shade");
+  scene->record(commands, *gpu, targets, *pools, *lists, commandCount, input.background);
+  timestamps->mark(commands, "scene");
   if (input.overlay) {
     overlay->record(commands, targets, input.overlay);
     timestamps->mark(commands, "overlay");
@@ -170,7 +166,7 @@ void Renderer::Impl::record(const FrameInput& input, uint32_t commandCount, std:
   recordBarriers(commands, toCopy);
   if (input.readColour) recordReadBack(commands, targets.colour, targets.colourBack);
   if (input.readDepth) {
-    const std::array depthToCopy{imageBarrier(targets.depth, usageSampled(), usageCopySource())};
+    const std::array depthToCopy{imageBarrier(targets.depth, usageDepthTarget(), usageCopySource())};
     recordBarriers(commands, depthToCopy);
     recordReadBack(commands, targets.depth, targets.depthBack);
   }

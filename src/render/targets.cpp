@@ -13,11 +13,8 @@ Targets createTargets(const GpuDevice& gpu, int widthPx, int heightPx, vk::Forma
   spec.format = colourFormat;
   spec.usage = Use::eColorAttachment | Use::eTransferSrc;
   made.colour = createImage(gpu, spec);
-  spec.format = kAttributeFormat;
-  spec.usage = Use::eColorAttachment | Use::eSampled;
-  made.attributes = createImage(gpu, spec);
   spec.format = kDepthFormat;
-  spec.usage = Use::eDepthStencilAttachment | Use::eSampled | Use::eTransferSrc;
+  spec.usage = Use::eDepthStencilAttachment | Use::eTransferSrc;
   spec.aspect = vk::ImageAspectFlagBits::eDepth;
   made.depth = createImage(gpu, spec);
   const vk::DeviceSize bytes = vk::DeviceSize{4} * static_cast<uint32_t>(widthPx) * static_cast<uint32_t>(heightPx);

@@ -6,11 +6,10 @@
 namespace eye {
 
 inline constexpr vk::Format kDepthFormat = vk::Format::eD32Sfloat;
-inline constexpr vk::Format kAttributeFormat = vk::Format::eR32G32Uint;
 
 struct Targets {
   int widthPx = 0, heightPx = 0;
-  GpuImage colour, depth, attributes;
+  GpuImage colour, depth;
   GpuBuffer colourBack, depthBack;
 };
 

@@ -40,7 +40,7 @@ TEST_CASE("clip space: corners of the frustum, depth near over z") {
   FrameInput input;
   const Frustum frustum = offAxisFrustum(-10, 40, -20, 30, 2);
   input.view = makeView({{30, 40, 5000}, 70, -10, 25}, frustum, 500, 500);
-  const shader::FrameData frame = frameData(input, 128);
+  const shader::FrameData frame = frameData(input);
   const auto ndc = [&](const Vec3d& eye) {
     const glm::vec4 clip = frame.clipFromEcef * glm::vec4(glm::vec3(glm::transpose(input.view.eyeFromEcef) * eye), 1);
     return glm::vec3(clip) / clip.w;

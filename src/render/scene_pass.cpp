@@ -1,0 +1,141 @@
+#include "render/scene_pass.h"
+
+#include <algorithm>
+#include <array>
+
+#include "gpu/pipeline.h"
+#include "spirv/sky_frag.h"
+#include "spirv/sky_vert.h"
+#include "spirv/terrain_frag.h"
+#include "spirv/terrain_vert.h"
+
+namespace eye {
+namespace {
+
+using Type = vk::DescriptorType;
+using Stage = vk::ShaderStageFlagBits;
+
+vk::raii::DescriptorSetLayout createSetLayout(const GpuDevice& gpu) {
+  const std::array bindings{
+      vk::DescriptorSetLayoutBinding(EYE_BIND_FRAME, Type::eUniformBuffer, 1, Stage::eVertex | Stage::eFragment),
+      vk::DescriptorSetLayoutBinding(EYE_BIND_TEXTURES, Type::eCombinedImageSampler, 1, Stage::eFragment)};
+  return {gpu.device, vk::DescriptorSetLayoutCreateInfo({}, bindings)};
+}
+
+// Between mip levels a CPU device takes the nearest, which saves it 4 to 7 % of a frame; others blend.
+vk::raii::Sampler createSampler(const GpuDevice& gpu) {
+  const bool onCpu = gpu.properties.deviceType == vk::PhysicalDeviceType::eCpu;
+  vk::SamplerCreateInfo info;
+  info.setMagFilter(vk::Filter::eLinear).setMinFilter(vk::Filter::eLinear).setMaxLod(VK_LOD_CLAMP_NONE);
+  info.setMipmapMode(onCpu ? vk::SamplerMipmapMode::eNearest : vk::SamplerMipmapMode::eLinear);
+  info.setAddressModeU(vk::SamplerAddressMode::eClampToEdge).setAddressModeV(vk::SamplerAddressMode::eClampToEdge);
+  return {gpu.device, info};
+}
+
+PipelineSpec terrainSpec() {
+  using shader::DrawData;
+  constexpr uint32_t kOutward = offsetof(DrawData, outwardEcef);
+  PipelineSpec spec;
+  spec.vertexSpirv = k_terrain_vert;
+  spec.fragmentSpirv = k_terrain_frag;
+  spec.bindings = {{0, sizeof(ChunkVertex), vk::VertexInputRate::eVertex},
+                   {1, sizeof(DrawData), vk::VertexInputRate::eInstance}};
+  spec.attributes = {{EYE_AT_POSITION_SKIRT, 0, vk::Format::eR16G16B16A16Sint, offsetof(ChunkVertex, x)},
+                     {EYE_AT_PARAM, 0, vk::Format::eR16G16Unorm, offsetof(ChunkVertex, s)},
+                     {EYE_AT_NORMAL, 0, vk::Format::eR16G16Snorm, offsetof(ChunkVertex, normalU)},
+                     {EYE_AT_ORIGIN, 1, vk::Format::eR32G32B32Sint, offsetof(DrawData, originMinusEyeCell)},
+                     {EYE_AT_STEP, 1, vk::Format::eR32Sfloat, offsetof(DrawData, stepM)},
+                     {EYE_AT_FRACTION_SKIRT, 1, vk::Format::eR32G32B32A32Sfloat, offsetof(DrawData, eyeFractionM)},
+                     {EYE_AT_UP, 1, vk::Format::eR32G32B32Sfloat, offsetof(DrawData, upEcef)},
+                     {EYE_AT_LAYER, 1, vk::Format::eR32Uint, offsetof(DrawData, textureLayer)},
+                     {EYE_AT_TEXTURE_MAP, 1, vk::Format::eR32G32B32A32Sfloat, offsetof(DrawData, textureScale)}};
+  for (uint32_t side = 0; side < 4; ++side) {
+    spec.attributes.push_back({EYE_AT_OUTWARD + side, 1, vk::Format::eR32G32B32Sfloat,
+                               kOutward + side * static_cast<uint32_t>(sizeof(shader::vec4))});
+  }
+  spec.depth = DepthUse::testAndWrite;
+  spec.cull = vk::CullModeFlagBits::eBack;
+  return spec;
+}
+
+PipelineSpec skySpec() {
+  PipelineSpec spec;
+  spec.vertexSpirv = k_sky_vert;
+  spec.fragmentSpirv = k_sky_frag;
+  spec.depth = DepthUse::whereNothing;
+  return spec;
+}
+
+}  // namespace
+
+ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat) {
+  frame_ = createBuffer(gpu, sizeof(shader::FrameData), vk::BufferUsageFlagBits::eUniformBuffer, MemoryUse::upload);
+  sampler_ = createSampler(gpu);
+  setLayout_ = createSetLayout(gpu);
+  const std::array sizes{vk::DescriptorPoolSize(Type::eUniformBuffer, 1),
+                         vk::DescriptorPoolSize(Type::eCombinedImageSampler, 1)};
+  pool_ = vk::raii::DescriptorPool(
+      gpu.device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
+  set_ = std::move(vk::raii::DescriptorSets(gpu.device, vk::DescriptorSetAllocateInfo(*pool_, *setLayout_)).front());
+  layout_ = vk::raii::PipelineLayout(gpu.device, vk::PipelineLayoutCreateInfo({}, *setLayout_));
+  const auto make = [&](PipelineSpec spec) {
+    spec.layout = *layout_;
+    spec.colourFormat = colourFormat;
+    spec.depthFormat = kDepthFormat;
+    return createPipeline(gpu, cache, spec);
+  };
+  terrain_ = make(terrainSpec());
+  sky_ = make(skySpec());
+  const vk::DescriptorBufferInfo frame(*frame_.buffer, 0, VK_WHOLE_SIZE);
+  gpu.device.updateDescriptorSets(vk::WriteDescriptorSet(*set_, EYE_BIND_FRAME, 0, Type::eUniformBuffer, {}, frame),
+                                  nullptr);
+}
+
+void ScenePass::bindTextures(const GpuDevice& gpu, const GpuImage& textures) {
+  const vk::DescriptorImageInfo info(*sampler_, *textures.view, vk::ImageLayout::eShaderReadOnlyOptimal);
+  gpu.device.updateDescriptorSets(
+      vk::WriteDescriptorSet(*set_, EYE_BIND_TEXTURES, 0, Type::eCombinedImageSampler, info), nullptr);
+}
+
+void ScenePass::record(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const Targets& targets,
+                       const ChunkPools& pools, const DrawLists& lists, uint32_t commandCount,
+                       const std::optional<glm::vec3>& background) const {
+  // The last frame may have copied from both.
+  const Usage before = usageDiscarded(vk::PipelineStageFlagBits2::eTransfer);
+  const std::array barriers{imageBarrier(targets.colour, before, usageColourTarget()),
+                            imageBarrier(targets.depth, before, usageDepthTarget())};
+  recordBarriers(commands, barriers);
+
+  const vk::Rect2D all({0, 0}, {static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx)});
+  vk::RenderingAttachmentInfo colour, depth;
+  colour.setImageView(*targets.colour.view).setImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
+  colour.setLoadOp(background ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eDontCare);
+  if (background) colour.setClearValue(vk::ClearColorValue(background->r, background->g, background->b, 1.0f));
+  depth.setImageView(*targets.depth.view).setImageLayout(vk::ImageLayout::eDepthAttachmentOptimal);
+  depth.setLoadOp(vk::AttachmentLoadOp::eClear);
+  depth.setClearValue(vk::ClearDepthStencilValue(static_cast<float>(EYE_CLEAR_DEPTH), 0));
+  vk::RenderingInfo info;
+  info.setRenderArea(all).setLayerCount(1).setColorAttachments(colour).setPDepthAttachment(&depth);
+  commands.beginRendering(info);
+  commands.setViewport(
+      0, vk::Viewport(0, 0, static_cast<float>(targets.widthPx), static_cast<float>(targets.heightPx), 0, 1));
+  commands.setScissor(0, all);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, nullptr);
+
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *terrain_);
+  commands.bindVertexBuffers(0, {pools.vertexBuffer(), *lists.draws().buffer}, {0, 0});
+  commands.bindIndexBuffer(pools.indexBuffer(), 0, vk::IndexType::eUint16);
+  constexpr uint32_t kStride = sizeof(vk::DrawIndexedIndirectCommand);
+  const uint32_t most = gpu.properties.limits.maxDrawIndirectCount;
+  for (uint32_t first = 0; first < commandCount; first += std::min(most, commandCount - first)) {
+    commands.drawIndexedIndirect(*lists.commands().buffer, vk::DeviceSize{first} * kStride,
+                                 std::min(most, commandCount - first), kStride);
+  }
+  if (!background) {
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *sky_);
+    commands.draw(3, 1, 0, 0);
+  }
+  commands.endRendering();
+}
+
+}  // namespace eye
