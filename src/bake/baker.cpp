@@ -1,7 +1,8 @@
 #include "bake/baker.h"
 
-#include <cmath>
+#include <algorithm>
 
+#include "bake/bake_estimate.h"
 #include "bake/mesher.h"
 #include "bake/ordered_parallel.h"
 #include "bake/tile_painter.h"
@@ -24,7 +25,9 @@ using BakedFamily = Result<std::vector<StoredChunk>>;
 class Writing {
  public:
   Writing(const BakePlan& plan, DatabaseWriter& writer, const BakeControl& control)
-      : plan_(plan), writer_(writer), control_(control) {}
+      : plan_(plan), writer_(writer), control_(control) {
+    if (control.progress) most_ = mostTiles(plan);
+  }
 
   // Tells which members are to have children.
   Result<void> take(const Family& family, std::vector<StoredChunk> chunks, std::vector<TileKey>& parents) {
@@ -66,19 +69,21 @@ class Writing {
     return writer_.commit();
   }
 
-  void report(int level, size_t familiesLeft, size_t familiesDone, size_t parentsFound) {
+  // `familiesLeft` of this level are still to come; deeper levels are taken to be filled as well as this one.
+  void report(int level, size_t familiesLeft) {
     if (!control_.progress) return;
     progress_.level = level;
-    // What is known, and below it as many levels again that each grow like this one.
-    const double growth = familiesDone > 0 ? static_cast<double>(parentsFound) / static_cast<double>(familiesDone) : 1;
-    double families = static_cast<double>(familiesLeft), below = static_cast<double>(parentsFound) + families * growth;
-    for (int l = level + 1; l <= plan_.maxLevel; ++l) {
-      families += below;
-      below *= growth;
+    const double levelTiles =
+        static_cast<double>(progress_.tiles - beforeLevel_) + 4.0 * static_cast<double>(familiesLeft);
+    double tiles = levelTiles;
+    const auto here = static_cast<size_t>(level);
+    for (size_t below = here + 1; here < most_.size() && below < most_.size(); ++below) {
+      tiles += most_[below] * std::min(1.0, levelTiles / most_[here]);
     }
-    progress_.estimate = progress_.tiles + static_cast<uint64_t>(4 * families);
+    progress_.estimate = beforeLevel_ + static_cast<uint64_t>(tiles);
     control_.progress(progress_);
   }
+  void beginLevel() { beforeLevel_ = progress_.tiles; }
 
   bool shouldStop() const { return control_.stop != nullptr && control_.stop->load(); }
 
@@ -86,7 +91,9 @@ class Writing {
   const BakePlan& plan_;
   DatabaseWriter& writer_;
   const BakeControl& control_;
-  size_t pending_ = 0;
+  std::vector<double> most_;  // tiles by level, at most
+  uint64_t beforeLevel_ = 0;  // tiles above the level at hand
+  size_t pending_ = 0;        // tiles in the open transaction
   BakeProgress progress_;
 };
 
@@ -150,6 +157,7 @@ Result<BakeOutcome> bake(const BakePlan& plan, DatabaseWriter& writer, const Bak
   for (int octant = 0; octant < kOctants; ++octant) families.push_back({std::nullopt, {TileKey::octantRoot(octant)}});
   for (int level = 0; !families.empty(); ++level) {
     std::vector<TileKey> parents;
+    writing.beginLevel();
     const Result<std::vector<Family>> missing = missingOf(families, writer, writing, parents);
     if (!missing) return tl::unexpected(missing.error());
 
@@ -159,7 +167,7 @@ Result<BakeOutcome> bake(const BakePlan& plan, DatabaseWriter& writer, const Bak
         [&](size_t i, BakedFamily&& baked) {
           result = baked ? writing.take((*missing)[i], std::move(*baked), parents)
                          : Result<void>(tl::unexpected(baked.error()));
-          writing.report(level, missing->size() - i - 1, i + 1, parents.size());
+          writing.report(level, missing->size() - i - 1);
           return result.has_value() && !writing.shouldStop();
         });
     if (!result) return tl::unexpected(result.error());

@@ -122,7 +122,7 @@ Result<DemoSources> makeDemoSources() {
                        "/vsimem/eyepoint_demo_world.tif"};
   sources.imagery = {"/vsimem/eyepoint_demo_airfield.tif"};
   const GeoGrid site = gridFor(kDemoSouthDeg, kDemoNorthDeg, kDemoWestDeg, kDemoEastDeg, 3.0 / 3600);
-  const GeoGrid country = gridFor(34, 40, 125, 132, 30.0 / 3600);
+  const GeoGrid country = gridFor(34, 40, 125, 132, 60.0 / 3600);
   // Cell-centred, as global rasters are: no row at the poles, no double column at the date line.
   GeoGrid world = gridFor(-89.75, 89.75, -179.75, 179.75, 0.5);
   if (auto made = writeDemoRaster(sources.elevation[0], site); !made) return tl::unexpected(made.error());
