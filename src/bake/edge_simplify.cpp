@@ -22,7 +22,7 @@ constexpr double kStripDeg = 1e-9;
 // hide a coarser one elsewhere.
 constexpr double kPostsPerPart = 512;
 // Vertices closer than so many lattice steps could turn over when they are rounded.
-constexpr double kMinGapSteps = 4.0;
+constexpr double kMinGapSteps = 2.0;
 
 struct Candidate {
   double alongDeg = 0;

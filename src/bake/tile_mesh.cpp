@@ -8,8 +8,6 @@ namespace {
 
 // Of the plane's grid: half of what the triangulation allows, so that interior points may stand out a little.
 constexpr double kGridHalf = 8388608.0;
-// A vertex nearer to another than this gains nothing: rounding is the error there.
-constexpr double kMinGapSteps = 1.0;
 // Nearer to a pole than this a vertex' latitude and longitude are no linear functions of its displacement by rounding.
 constexpr double kNearPoleDeg = 89.9;
 
@@ -91,9 +89,10 @@ bool TileMesh::insert(LatLon place, double heightM, int32_t near) {
       makeVertex(place, heightM, ecefFromGraticule(parallelAt(place.latDeg), meridianAt(place.lonDeg), heightM));
   const int32_t home = locate(vertex.plane.x, vertex.plane.y, near);
   if (home == kNoTriangle) return false;
+  // Nearer to another vertex than a lattice step it gains nothing: rounding is the error there.
   for (const int32_t corner : triangulation_.triangles()[at(home)].vertex) {
     const PlanePoint& p = vertices_[at(corner)].plane;
-    if (std::hypot(p.x - vertex.plane.x, p.y - vertex.plane.y) < kMinGapSteps * stepM_) return false;
+    if (std::hypot(p.x - vertex.plane.x, p.y - vertex.plane.y) < stepM_) return false;
   }
   if (triangulation_.insert(gridPoint(vertex.plane), home) == kNoVertex) return false;
   vertices_.push_back(vertex);

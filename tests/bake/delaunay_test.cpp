@@ -10,7 +10,9 @@ using namespace eye;
 
 namespace {
 
-size_t at(int32_t i) { return static_cast<size_t>(i); }
+size_t at(int32_t i) {
+  return static_cast<size_t>(i);
+}
 
 int64_t doubleArea(const std::vector<PlanarPoint>& loop) {
   int64_t sum = 0;
@@ -25,8 +27,8 @@ void checkTopology(const Triangulation& mesh, const std::vector<PlanarPoint>& lo
   const auto& points = mesh.points();
   for (size_t t = 0; t < mesh.triangles().size(); ++t) {
     const Triangulation::Triangle& triangle = mesh.triangles()[t];
-    const int64_t a = orientation(points[at(triangle.vertex[0])], points[at(triangle.vertex[1])],
-                                  points[at(triangle.vertex[2])]);
+    const int64_t a =
+        orientation(points[at(triangle.vertex[0])], points[at(triangle.vertex[1])], points[at(triangle.vertex[2])]);
     turnedOver += a <= 0;
     area += a;
     for (size_t i = 0; i < 3; ++i) {
