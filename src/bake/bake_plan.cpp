@@ -15,12 +15,22 @@ constexpr double kPaletteDetailPosts = 0.5;
 // Texels up to so many times the source's detail are as good as it, at a quarter of the bytes of the next level.
 constexpr double kTexelSlack = 1.4;
 
+// Tiles without data of their own are refined beside it up to so many levels above the finest.
+constexpr int kNoFinerBesideData = 3;
+// The palette draws nothing sharper than two of its finest texels: its texels may be twice as large on screen.
+constexpr double kPaletteTexelWeight = 0.5;
+
 double cellHeightDeg(int level) {
   return 90 / std::exp2(level);
 }
 
 bool meets(const TileBounds& a, const TileBounds& b) {
   return a.southDeg < b.northDeg && b.southDeg < a.northDeg && a.westDeg < b.eastDeg && b.westDeg < a.eastDeg;
+}
+
+TileBounds grown(const TileBounds& b, double byDeg) {
+  return {std::max(-90.0, b.southDeg - byDeg), std::min(90.0, b.northDeg + byDeg), std::max(-180.0, b.westDeg - byDeg),
+          std::min(180.0, b.eastDeg + byDeg)};
 }
 
 // Size of the finest detail that pictures in the region can show, degrees; 0 where there is none to show.
@@ -38,8 +48,11 @@ bool isFinerThanTexels(const BakePlan& plan, const TileBounds& region, int level
 
 }  // namespace
 
+// Above the leaves the tolerance is twice what the leaves' would double to: a chunk is drawn where its parent's error is
+// too large at its nearest point, so it is finer than needed at its far end, the more so the larger it is for its error.
+// With leaves of 0.5 m the same picture takes 66,000 triangles instead of 114,000 (High Tatra, one pixel).
 double BakePlan::toleranceM(int level) const {
-  return finestErrorM * std::exp2(std::max(0, meshLevel - level));
+  return level >= meshLevel ? finestErrorM : finestErrorM * std::exp2(meshLevel - level + 1);
 }
 
 bool BakePlan::wantsFinerImagery(const TileKey& key) const {
@@ -52,17 +65,25 @@ bool BakePlan::hasImagery(const TileKey& key) const {
   return isFinerThanTexels(*this, key.bounds(), parent->level());
 }
 
+// Also beside finer data, within the cell's own size of it: the further off, the coarser, so that from within the data
+// nothing beyond its border is wrong by more pixels than what is inside.
 bool BakePlan::wantsChildren(const TileKey& key, double geometricErrorM) const {
-  if (key.level() >= maxLevel || (region && !meets(*region, key.bounds()))) return false;
-  if (wantsFinerImagery(key)) return true;
-  const double spacingDeg = surface->finestSpacingDeg(key.bounds());
+  if (key.level() >= maxLevel) return false;
+  const double besideDeg = key.level() < meshLevel - kNoFinerBesideData ? cellHeightDeg(key.level()) : 0;
+  const TileBounds near = grown(key.bounds(), besideDeg);
+  if (region && !meets(*region, near)) return false;
+  if (wantsFinerImagery(key) && (!region || meets(*region, key.bounds()))) return true;
+  const double spacingDeg = surface->finestSpacingDeg(near);
   return spacingDeg > 0 && key.level() < meshLevel && cellHeightDeg(key.level()) > kLeafPosts * spacingDeg &&
          geometricErrorM > finestErrorM;
 }
 
 double BakePlan::texelErrorM(const TileKey& key) const {
   const bool refines = wantsFinerImagery(key) && (!region || meets(*region, key.bounds()));
-  return refines ? texelM(key.level(), textureSize) : 0;
+  if (!refines) return 0;
+  const double pixelDeg = imagery != nullptr ? imagery->finestPixelDeg(key.bounds()) : 0;
+  const bool fromImagery = pixelDeg > 0 && texelDeg(key.level(), textureSize) > kTexelSlack * pixelDeg;
+  return texelM(key.level(), textureSize) * (fromImagery ? 1.0 : kPaletteTexelWeight);
 }
 
 BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery, double finestSpacingDeg,

@@ -19,7 +19,7 @@ inline constexpr double kFinestErrorM = 0.5;
 struct BakePlan {
   const ElevationSurface* surface = nullptr;
   const ImageryMosaic* imagery = nullptr;  // may be null
-  int textureSize = 128;
+  int textureSize = 256;
   int maxLevel = 0;
   int meshLevel = 0;  // the level whose tolerance is finestErrorM; below it only imagery refines
   double finestErrorM = kFinestErrorM;
@@ -34,7 +34,7 @@ struct BakePlan {
 };
 
 struct PlanOptions {
-  int textureSize = 128;
+  int textureSize = 256;
   std::optional<int> maxLevel;
   std::optional<double> errorM;
   std::optional<TileBounds> region;

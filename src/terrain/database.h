@@ -19,7 +19,7 @@ inline constexpr int kSchemaVersion = 1;
 struct DatabaseInfo {
   int schemaVersion = kSchemaVersion;
   int maxLevel = 0;
-  double finestErrorM = 0;  // the tolerance of the finest level; a level's tolerance doubles with each level above
+  double finestErrorM = 0;  // the tolerance of the finest meshes; see BakePlan::toleranceM for the levels above
   int textureSize = 0;      // texels along a chunk's edge, a power of two in 16..2048
   TileBounds dataBounds{};  // where the sources have data
   std::string description;  // sources and settings, for `info` and to refuse a --resume with others

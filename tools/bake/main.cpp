@@ -96,7 +96,7 @@ void addBakeOptions(CLI::App& app, Arguments& arguments) {
          "coarser ones")
       ->check(CLI::Range(0.001, 10000.0))
       ->type_name("M");
-  app.add_option("--texture-size", job.plan.textureSize, "Texels along a tile's edge, a power of two (default 128)")
+  app.add_option("--texture-size", job.plan.textureSize, "Texels along a tile's edge, a power of two (default 256)")
       ->check(CLI::Validator(checkTextureSize, "POWER OF TWO"))
       ->type_name("N");
   app.add_option("--region", arguments.region, "Refine only here, degrees")->type_name("W,S,E,N");
