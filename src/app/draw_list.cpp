@@ -1,14 +1,8 @@
 #include "app/draw_list.h"
 
 namespace eye {
-namespace {
 
-constexpr double kMeridianQuarterM = 10001966.0;  // equator to pole along the ellipsoid: a level 0 cell's height
-
-}  // namespace
-
-void makeDrawList(const TerrainCache& cache, const Selection& selection, int textureSize,
-                  std::vector<ChunkDraw>& draws) {
+void makeDrawList(const TerrainCache& cache, const Selection& selection, std::vector<ChunkDraw>& draws) {
   draws.clear();
   draws.reserve(selection.draws.size());
   for (const DrawnChunk& drawn : selection.draws) {
@@ -30,8 +24,6 @@ void makeDrawList(const TerrainCache& cache, const Selection& selection, int tex
     draw.textureLayer = static_cast<uint32_t>(texture.gpu.textureLayer);
     draw.textureScale = drawn.textureScale;
     draw.textureOffset = drawn.textureOffset;
-    draw.texelM = static_cast<float>(kMeridianQuarterM / static_cast<double>(uint64_t{1} << texture.meta.key.level()) /
-                                     textureSize);
   }
 }
 

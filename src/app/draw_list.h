@@ -9,8 +9,7 @@
 
 namespace eye {
 
-// `draws` keeps its memory from frame to frame. `textureSize`: of the terrain database.
-void makeDrawList(const TerrainCache& cache, const Selection& selection, int textureSize,
-                  std::vector<ChunkDraw>& draws);
+// `draws` keeps its memory from frame to frame.
+void makeDrawList(const TerrainCache& cache, const Selection& selection, std::vector<ChunkDraw>& draws);
 
 }  // namespace eye

@@ -174,7 +174,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
                     readDepth > drawn_->readDepth;
   FrameRecord record;
   if (draw) {
-    makeDrawList(pager_->cache(), selection_, pager_->info().textureSize, draws_);
+    makeDrawList(pager_->cache(), selection_, draws_);
     FrameInput input{.view = view_,
                      .draws = draws_,
                      .lighting = lighting,

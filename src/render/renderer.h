@@ -40,7 +40,6 @@ struct ChunkDraw {
   std::array<glm::vec3, 4> outwardEcef{};  // by Side: horizontal, away from the chunk, for the skirts' flare
   uint32_t textureLayer = 0;
   glm::vec2 textureScale{1.0f}, textureOffset{0.0f};
-  float texelM = 1;  // size of a texel of that layer
 };
 
 struct Lighting {

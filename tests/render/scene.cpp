@@ -96,7 +96,6 @@ MadeChunk makeChunk(const Patch& patch, const HeightFunction& heightM, std::vect
   const glm::vec3 east(enu[0]), north(enu[1]);
   made.draw.upEcef = glm::vec3(enu[2]);
   made.draw.outwardEcef = {-north, east, north, -east};
-  made.draw.texelM = static_cast<float>((patch.northDeg - patch.southDeg) * 111000 / kTextureSize);
   return made;
 }
 

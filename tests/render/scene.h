@@ -29,7 +29,7 @@ MadeChunk makeChunk(const Patch& patch, const HeightFunction& heightM, std::vect
 std::vector<uint8_t> flatTexture(int size, uint8_t red, uint8_t green, uint8_t blue);
 std::vector<uint8_t> groundTexture(int size, uint32_t seed);  // noise in greens and greys, with its mip chain
 
-// Uploads and completes draw.gpu, textureLayer, texelM. Fails the test where the pools are full.
+// Uploads and completes draw.gpu and textureLayer. Fails the test where the pools are full.
 ChunkDraw addChunk(Renderer& renderer, const MadeChunk& chunk);
 
 // Ridges of some 1,500 m, `side` x `side` chunks about 49 N 20 E, front to back as seen from `eye`.

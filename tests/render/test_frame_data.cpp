@@ -36,6 +36,18 @@ TEST_CASE("a chunk of the finest lattice seen from the Moon's distance does not 
   CHECK(glm::distance(seen, truth) / glm::length(truth) < 1e-6);
 }
 
+TEST_CASE("the outermost texels' centres lie on a chunk's edges, also through an ancestor's part") {
+  ChunkDraw draw;
+  const shader::DrawData own = drawData(draw, {}, 128);
+  CHECK(own.textureOffset.x == Approx(0.5 / 128));
+  CHECK(own.textureScale.y + own.textureOffset.y == Approx(127.5 / 128));
+  draw.textureScale = glm::vec2(0.25f);
+  draw.textureOffset = glm::vec2(0.5f, 0.75f);
+  const shader::DrawData ancestors = drawData(draw, {}, 128);
+  CHECK(ancestors.textureOffset.x == Approx(64.0 / 128));  // half way between the first and the last centre
+  CHECK(ancestors.textureScale.y + ancestors.textureOffset.y == Approx(127.5 / 128));
+}
+
 TEST_CASE("clip space: corners of the frustum, depth near over z") {
   FrameInput input;
   const Frustum frustum = offAxisFrustum(-10, 40, -20, 30, 2);

@@ -173,6 +173,9 @@ TEST_CASE("a skirt closes the gap between edges of different height") {
   const FrameOutput closed = draw(*renderer, input);
   CHECK(backgroundPixels(closed) == 0);
   CHECK(closed.draws == 4);
+  // The upper one's alone reaches down to the lower ground.
+  draws[0].skirtMask = 0;
+  CHECK(backgroundPixels(draw(*renderer, input)) == 0);
   // Only the sides that are asked for: the wrong ones leave the gap open.
   draws[0].skirtMask = draws[1].skirtMask = 1 << static_cast<int>(Side::north);
   CHECK(backgroundPixels(draw(*renderer, input)) > 50);
