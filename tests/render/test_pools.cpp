@@ -114,3 +114,20 @@ TEST_CASE("upload stops at the budget and goes on after a release") {
   }
   CHECK(renderer->bytesResident() == 0);
 }
+
+TEST_CASE("a mesh pool that is full gives a refused chunk's texture back") {
+  RendererOptions options;
+  options.widthPx = kWidth;
+  options.heightPx = kHeight;
+  options.gpuBudgetBytes = uint64_t{8} << 20;
+  const auto renderer = makeRenderer(options);
+  if (!renderer) return;
+  const MadeChunk bare = makeChunk({49, 20, 49.02, 20.03, 40}, level(500), {});
+  const MadeChunk textured = makeChunk({49, 20, 49.02, 20.03, 40}, level(500), flatTexture(128, 20, 200, 20));
+  int held = 0;
+  while (renderer->upload(bare.loaded)) REQUIRE(++held < 10000);
+  const uint64_t full = renderer->bytesResident();
+  CHECK(held > 10);
+  CHECK_FALSE(renderer->upload(textured.loaded).has_value());
+  CHECK(renderer->bytesResident() == full);
+}
