@@ -24,7 +24,7 @@ build() {
     cmake --preset release -DEYE_BUILD_TESTS=OFF >/dev/null
   fi
   echo "Build: eyepoint, eyepoint-bake, eyepoint-host ..."
-  cmake --build build/release --target eyepoint eyepoint-bake eyepoint-host
+  cmake --build --preset release --target eyepoint eyepoint-bake eyepoint-host
   cd - >/dev/null
 }
 

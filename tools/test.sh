@@ -14,14 +14,14 @@ sanitize() {
   shift
   step "$preset: $*"
   cmake --preset "$preset" >/dev/null
-  cmake --build "build/$preset" --target "${@/#/test_}"
+  cmake --build --preset "$preset" --target "${@/#/test_}"
   for name in "$@"; do "build/$preset/bin/test_$name" --durations no; done
 }
 
 tools/install_dependencies.sh test
 step "build: release"
 cmake --preset release -DEYE_BUILD_TESTS=ON >/dev/null
-cmake --build build/release
+cmake --build --preset release
 step "lint"
 tools/lint.sh
 

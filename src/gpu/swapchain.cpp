@@ -46,7 +46,7 @@ Swapchain::Swapchain(const GpuDevice& gpu, const Window& window, bool vsync)
 }
 
 void Swapchain::recreate(const GpuDevice& gpu) {
-  gpu.device.waitIdle();  // presentations may still use the old images
+  gpu.device.waitIdle();  // resize: presentations may still use the old images
   const vk::SurfaceCapabilitiesKHR can = gpu.physical.getSurfaceCapabilitiesKHR(*surface_);
   int widthPx = 0, heightPx = 0;
   window_.sizePx(widthPx, heightPx);

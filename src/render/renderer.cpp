@@ -44,7 +44,7 @@ struct Renderer::Impl {
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Renderer::~Renderer() {
-  (void)vkDeviceWaitIdle(*impl_->gpu->device);  // not by vk::raii, which throws where the device is lost
+  (void)vkDeviceWaitIdle(*impl_->gpu->device);  // shutdown; vk::raii would throw where the device is lost
 }
 
 Result<std::vector<DeviceDescription>> Renderer::listDevices() {

@@ -221,7 +221,7 @@ TEST_CASE("bad input: configuration files") {
   refused("visibilty = 20000\n", "visibilty.*visibility");
   refused("sse = \n", "bad.toml:1");
   refused("sse = -4\n", "sse");
-  refused("size = [800, 600, 3]\n", "size");
+  refused("fov = [60, 70]\n", "fov");
   refused("fov = { wide = true }\n", "fov");
   refused(std::string("\xff\xfe\x00\x01garbage", 11), "bad.toml");
   expectFailure("eyepoint", picture(file, {"--config", "/nonexistent.toml"}), 2, "/nonexistent.toml");
