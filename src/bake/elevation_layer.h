@@ -38,6 +38,7 @@ class ElevationLayer {
   explicit ElevationLayer(const PostLattice& lattice) : lattice_(lattice) {}
   const PostLattice& lattice() const { return lattice_; }
   const std::vector<ElevationFile>& files() const { return files_; }
+  const PostRect& bounds() const { return bounds_; }  // around all of its posts
   double latStepDeg() const { return 1 / lattice_.lat.perDegree; }
 
   // True where the file's posts lie on the lattice and overlap no file here by more than a shared row or column.

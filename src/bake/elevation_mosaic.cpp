@@ -13,6 +13,18 @@
 
 namespace eye {
 
+namespace {
+
+// A page that alone makes the surface, and its layer's inner cells: nothing above it, no fade, no pole.
+struct PagePatch {
+  PageCache::Page page;
+  PostLattice lattice;
+  int64_t south = 0, north = 0, west = 0, east = 0;  // cells, inclusive
+  PageCache::Page refused;                           // the last page that others show through
+};
+
+}  // namespace
+
 struct ElevationMosaic::Impl {
   explicit Impl(const MosaicOptions& given) : options(given), cache(given.cacheBytes) {}
 
@@ -24,6 +36,7 @@ struct ElevationMosaic::Impl {
   std::optional<Error> error;
 
   HeightBelow heightFrom(size_t layer, double latDeg, double lonDeg);
+  const PagePatch* patchAt(double latDeg, double lonDeg, PagePatch& patch);
   PageCache::Page page(size_t layer, int64_t pageRow, int64_t pageColumn);
 };
 
@@ -103,7 +116,38 @@ HeightBelow ElevationMosaic::Impl::heightFrom(size_t first, double latDeg, doubl
     remaining *= 1 - weight;
     if (remaining <= 0) break;
   }
+  // The sea's level is the geoid's where heights are lifted by it.
+  if (remaining > 0 && options.correctionM) heightM += remaining * options.correctionM(latDeg, lonDeg);
   return {heightM, 1 - remaining};
+}
+
+// The patch that holds a point just asked for; null where there is none such.
+const PagePatch* ElevationMosaic::Impl::patchAt(double latDeg, double lonDeg, PagePatch& patch) {
+  const LastPages& lastPages = lastPagesOf(serial, layers.size());
+  ElevationLayer::Place place;
+  for (size_t i = 0; i < layers.size(); ++i) {
+    const PageCache::Page& page = lastPages.pages[i];
+    if (!layers[i].locate(latDeg, lonDeg, place) || !page || !holds(*page, place.row, place.column)) continue;
+    if (page->rows == 0 && i + 1 < layers.size()) continue;
+    if (page->rows == 0 || !page->weight.empty() || page == patch.refused) return nullptr;
+    const PostLattice& lattice = layers[i].lattice();
+    const PostRect rows = layers[i].bounds();
+    patch.page = page;
+    patch.lattice = lattice;
+    patch.south = std::max(page->south, rows.south);
+    patch.north = std::min(page->south + kPagePosts, rows.north()) - 1;
+    patch.west = page->west;
+    patch.east = page->west + kPagePosts - 1;
+    const TileBounds extent{lattice.lat.deg(patch.south), lattice.lat.deg(patch.north + 1), lattice.lon.deg(patch.west),
+                            lattice.lon.deg(patch.east + 1)};
+    for (size_t above = 0; above < i; ++above) {
+      if (!layers[above].meets(extent, kFadePosts + 1)) continue;
+      patch.refused = page;
+      return nullptr;
+    }
+    return &patch;
+  }
+  return nullptr;
 }
 
 ElevationMosaic::ElevationMosaic(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -153,6 +197,30 @@ Result<std::unique_ptr<ElevationMosaic>> ElevationMosaic::open(const std::vector
 
 double ElevationMosaic::heightM(double latDeg, double lonDeg) const {
   return impl_->heightFrom(0, latDeg, lonDeg >= 180 ? lonDeg - 360 : lonDeg).heightM;
+}
+
+void ElevationMosaic::heightsM(const std::vector<LatLon>& points, std::vector<double>& heightsM) const {
+  heightsM.resize(points.size());
+  PagePatch held;
+  const PagePatch* patch = nullptr;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const auto [latDeg, lonDeg] = points[i];
+    if (patch != nullptr) {
+      const double row = patch->lattice.lat.position(latDeg), column = patch->lattice.lon.position(lonDeg);
+      const double cellRow = std::floor(row), cellColumn = std::floor(column);
+      if (cellRow >= static_cast<double>(patch->south) && cellRow <= static_cast<double>(patch->north) &&
+          cellColumn >= static_cast<double>(patch->west) && cellColumn <= static_cast<double>(patch->east)) {
+        const ElevationPage& page = *patch->page;
+        const auto rowPosts = static_cast<size_t>(page.columns);
+        const size_t post = static_cast<size_t>(static_cast<int64_t>(cellRow) - page.south) * rowPosts +
+                            static_cast<size_t>(static_cast<int64_t>(cellColumn) - page.west);
+        heightsM[i] = bilinear(page.heightM, post, rowPosts, row - cellRow, column - cellColumn);
+        continue;
+      }
+    }
+    heightsM[i] = heightM(latDeg, lonDeg);
+    patch = impl_->patchAt(latDeg, lonDeg >= 180 ? lonDeg - 360 : lonDeg, held);
+  }
 }
 
 PostLines ElevationMosaic::postLines(const TileBounds& region) const {

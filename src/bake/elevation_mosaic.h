@@ -26,6 +26,7 @@ class ElevationMosaic final : public ElevationSurface {
   ~ElevationMosaic() override;
 
   double heightM(double latDeg, double lonDeg) const override;
+  void heightsM(const std::vector<LatLon>& points, std::vector<double>& heightsM) const override;
   PostLines postLines(const TileBounds& region) const override;
   double finestSpacingDeg(const TileBounds& region) const override;
   TileBounds dataBounds() const override;

@@ -7,16 +7,16 @@ namespace eye {
 
 namespace {
 
+constexpr uint64_t kHashX = 0x9E3779B97F4A7C15ull, kHashY = 0xC2B2AE3D27D4EB4Full, kHashZ = 0x165667B19E3779F9ull,
+                   kHashSeed = 0xD6E8FEB86659FD93ull;
+
 // The slope at a lattice corner, one of the 12 directions to a cube's edges (Perlin 2002), times the way from it.
-float corner(int64_t x, int64_t y, int64_t z, uint32_t seed, const glm::vec3& from) {
-  auto h = static_cast<uint64_t>(x) * 0x9E3779B97F4A7C15ull ^ static_cast<uint64_t>(y) * 0xC2B2AE3D27D4EB4Full ^
-           static_cast<uint64_t>(z) * 0x165667B19E3779F9ull ^ uint64_t { seed } * 0xD6E8FEB86659FD93ull;
+float corner(uint64_t h, float x, float y, float z) {
   h ^= h >> 32;
-  h *= 0xD6E8FEB86659FD93ull;
-  h ^= h >> 32;
-  const auto edge = static_cast<unsigned>(h & 15);
-  const float u = edge < 8 ? from.x : from.y;
-  const float v = edge < 4 ? from.y : edge == 12 || edge == 14 ? from.x : from.z;
+  h *= kHashSeed;
+  const auto edge = static_cast<unsigned>(h >> 60);
+  const float u = edge < 8 ? x : y;
+  const float v = edge < 4 ? y : edge == 12 || edge == 14 ? x : z;
   return ((edge & 1) ? -u : u) + ((edge & 2) ? -v : v);
 }
 
@@ -32,16 +32,20 @@ float mix(float a, float b, float t) {
 float gradientNoise(const glm::dvec3& p, uint32_t seed) {
   const glm::dvec3 floor = glm::floor(p);
   const glm::vec3 in(p - floor);
-  const auto x = static_cast<int64_t>(floor.x), y = static_cast<int64_t>(floor.y), z = static_cast<int64_t>(floor.z);
+  const uint64_t x = static_cast<uint64_t>(static_cast<int64_t>(floor.x)) * kHashX;
+  const uint64_t y = static_cast<uint64_t>(static_cast<int64_t>(floor.y)) * kHashY;
+  const uint64_t z = static_cast<uint64_t>(static_cast<int64_t>(floor.z)) * kHashZ;
   const float tx = smooth(in.x), ty = smooth(in.y), tz = smooth(in.z);
-  const auto at = [&](int dx, int dy, int dz) {
-    return corner(x + dx, y + dy, z + dz, seed, in - glm::vec3(float(dx), float(dy), float(dz)));
+  const auto line = [&](uint64_t yz, float dy, float dz) {
+    return mix(corner(x ^ yz, in.x, dy, dz), corner((x + kHashX) ^ yz, in.x - 1, dy, dz), tx);
   };
-  const auto plane = [&](int dz) {
-    return mix(mix(at(0, 0, dz), at(1, 0, dz), tx), mix(at(0, 1, dz), at(1, 1, dz), tx), ty);
+  const auto plane = [&](uint64_t zSeed, float dz) {
+    return mix(line(y ^ zSeed, in.y, dz), line((y + kHashY) ^ zSeed, in.y - 1, dz), ty);
   };
+  const uint64_t seeded = uint64_t{seed} * kHashSeed;
+  const float below = plane(z ^ seeded, in.z), above = plane((z + kHashZ) ^ seeded, in.z - 1);
   // Its values stay within about 0.8 and mostly within half of that.
-  return std::clamp(1.35f * mix(plane(0), plane(1), tz), -1.0f, 1.0f);
+  return std::clamp(1.35f * mix(below, above, tz), -1.0f, 1.0f);
 }
 
 float groundNoise(const glm::dvec3& ecefM, double longestM, double shortestM, double gain, double texelM,

@@ -105,8 +105,8 @@ Result<std::vector<uint8_t>> paintTile(const TileKey& key, int size, const Eleva
       if (colours[t].a < 0.999f) {
         const glm::dvec3 ecefM = ecefFromGeodetic({centres[t].latDeg, centres[t].lonDeg, 0});
         const double sizeM = latDeg * kMetresPerDegree;
-        const float broad = groundNoise(ecefM, 6400, 400, 0.55, sizeM, 1);
-        const float grain = groundNoise(ecefM, 320, 20, 0.8, sizeM, 11);
+        const float broad = groundNoise(ecefM, 6400, 800, 0.6, sizeM, 1);
+        const float grain = groundNoise(ecefM, 320, 40, 0.8, sizeM, 11);
         glm::vec3 sum(0);
         for (int sub = 0; sub < across * across; ++sub) {
           const size_t first =

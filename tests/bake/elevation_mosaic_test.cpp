@@ -288,6 +288,7 @@ TEST_CASE("A vertical datum lifts heights by its undulation") {
   const auto mosaic = std::move(*ElevationMosaic::open({file}, options));
   CHECK(mosaic->heightM(49, 20) == Approx(141));
   CHECK(mosaic->heightM(49.5, 20.5) == Approx(141.5).margin(1e-4));
+  CHECK(mosaic->heightM(50.5, 20.5) == Approx(42.5).margin(1e-4));  // the sea
   CHECK(loadVerticalDatum("egm0").error().kind == ErrorKind::notFound);
 }
 
@@ -305,4 +306,22 @@ TEST_CASE("Real tiles: twelve files make one layer with posts at whole arc-secon
   const TileBounds bounds = mosaic->dataBounds();
   CHECK(bounds.southDeg == Approx(48).margin(1e-9));
   CHECK(bounds.eastDeg == Approx(22).margin(1e-9));
+}
+
+TEST_CASE("Many heights at once are the same as one by one") {
+  TestFolder folder;
+  const std::string fine = writeHeights(folder.file("fine.tif"), postGrid(49.4, 20.4, 0.002, 101, 101), hillsM);
+  GeoGrid world = postGrid(-89, -179, 2, 90, 180);
+  const std::string globe = writeHeights(folder.file("globe.tif"), world, hillsM);
+  const auto mosaic = openMosaic({fine, globe});
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> lat(-90, 90), lon(-180, 180), near(-0.3, 0.3);
+  std::vector<LatLon> points{{90, 0}, {-90, 20}, {0, 180}, {0, -180}, {89.5, 179.99}, {49.5, 20.5}};
+  for (int i = 0; i < 3000; ++i) points.push_back({lat(random), lon(random)});
+  for (int i = 0; i < 3000; ++i) points.push_back({49.5 + near(random), 20.5 + near(random)});
+  std::vector<double> heights;
+  mosaic->heightsM(points, heights);
+  int wrong = 0;
+  for (size_t i = 0; i < points.size(); ++i) wrong += heights[i] != mosaic->heightM(points[i].latDeg, points[i].lonDeg);
+  CHECK(wrong == 0);
 }
