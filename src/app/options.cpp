@@ -30,6 +30,18 @@ std::optional<std::vector<double>> splitNumbers(const std::string& text, char se
   return numbers;
 }
 
+// CLI::Range lets NaN through, since NaN is not less than anything.
+CLI::Validator within(double least, double most) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        const auto number = splitNumbers(text, ' ', 1);
+        return number && (*number)[0] >= least && (*number)[0] <= most
+                   ? std::string()
+                   : fmt::format("'{}' is not a number from {} to {}", text, least, most);
+      },
+      fmt::format("{}..{}", least, most));
+}
+
 void setSize(Options& options, const std::string& text) {
   const auto numbers = splitNumbers(text, 'x', 2);
   if (!numbers || std::floor((*numbers)[0]) != (*numbers)[0] || std::floor((*numbers)[1]) != (*numbers)[1] ||
@@ -99,7 +111,7 @@ void addView(CLI::App& app, Options& o) {
       ->group(group);
   app.add_option("--fov", o.fovDeg, "Full horizontal angle, degrees; default 60")
       ->type_name("DEG")
-      ->check(CLI::Range(0.1, 170.0))
+      ->check(within(0.1, 170.0))
       ->group(group);
   app.add_option_function<std::string>(
          "--frustum", [&o](const std::string& t) { setFrustum(o, t); },
@@ -108,13 +120,13 @@ void addView(CLI::App& app, Options& o) {
       ->group(group);
   app.add_option("--near", o.nearM, "Near plane, metres; default 1")
       ->type_name("M")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(within(0.01, 1000.0))
       ->group(group);
   app.add_flag("--headless", o.headless, "No window; works without a display")->group(group);
   app.add_flag("--fullscreen", o.fullscreen, "The whole monitor (F11 switches)")->group(group);
   app.add_option("--monitor", o.monitor, "Which monitor, from 0")
       ->type_name("N")
-      ->check(CLI::Range(0, 63))
+      ->check(within(0, 63))
       ->group(group);
   app.add_option_function<std::string>(
          "--vsync", [&o](const std::string& t) { o.vsync = onOff("--vsync", t); }, "on (default) or off")
@@ -128,7 +140,7 @@ void addRun(CLI::App& app, Options& o) {
   app.add_option("--frames", o.frames, "Stop after N frames")->type_name("N")->check(CLI::PositiveNumber)->group(group);
   app.add_option("--duration", o.durationS, "Stop after S seconds")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(within(0.001, 1e9))
       ->group(group);
   app.add_option_function<std::string>(
          "--rate", [&o](const std::string& t) { setRate(o, t); },
@@ -149,7 +161,7 @@ void addQuality(CLI::App& app, Options& o) {
   const char* group = "Quality and budgets";
   app.add_option("--sse", o.ssePx, "Tolerated screen-space error, pixels; default 1")
       ->type_name("PX")
-      ->check(CLI::Range(0.05, 64.0))
+      ->check(within(0.05, 64.0))
       ->group(group);
   app.add_option_function<std::string>(
          "--culling",
@@ -160,19 +172,19 @@ void addQuality(CLI::App& app, Options& o) {
       ->group(group);
   app.add_option("--cache-ram", o.cacheRamMiB, "Budget for decoded terrain in memory; default 96")
       ->type_name("MIB")
-      ->check(CLI::Range(8, 1 << 20))
+      ->check(within(8, 1 << 20))
       ->group(group);
   app.add_option("--cache-gpu", o.cacheGpuMiB, "Budget for terrain on the GPU; default 160")
       ->type_name("MIB")
-      ->check(CLI::Range(16, 1 << 20))
+      ->check(within(16, 1 << 20))
       ->group(group);
   app.add_option("--time-of-day", o.timeOfDayH, "Local solar time, hours; default 9")
       ->type_name("H")
-      ->check(CLI::Range(0.0, 24.0))
+      ->check(within(0.0, 24.0))
       ->group(group);
   app.add_option("--visibility", o.visibilityM, "Meteorological visibility, metres; default the host's, else 60000")
       ->type_name("M")
-      ->check(CLI::Range(10.0, 1.0e6))
+      ->check(within(10.0, 1.0e6))
       ->group(group);
 }
 
