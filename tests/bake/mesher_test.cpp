@@ -214,9 +214,9 @@ TEST_CASE("The error is bounded on the bare ellipsoid, from octants down") {
 TEST_CASE("The error is bounded on a rough globe: coarse tiles, poles, the date line") {
   const PostSurface globe(8, roughGlobeM);
   for (int level = 0; level <= 6; level += 2) {
-    checkGuarantee(globe, TileKey::containing(89.99, 100.0, level), toleranceOf(level));
-    checkGuarantee(globe, TileKey::containing(-40.0, 179.99, level), toleranceOf(level));
-    checkGuarantee(globe, TileKey::containing(20.0, -179.99, level), toleranceOf(level));
+    checkGuarantee(globe, TileKey::containing(89.99, 100.0, level), toleranceOf(level), 10000);
+    checkGuarantee(globe, TileKey::containing(-40.0, 179.99, level), toleranceOf(level), 10000);
+    checkGuarantee(globe, TileKey::containing(20.0, -179.99, level), toleranceOf(level), 10000);
   }
 }
 
@@ -227,12 +227,12 @@ TEST_CASE("The error is bounded on real mountains") {
     return;
   }
   for (int level = 8; level <= 14; ++level) {
-    checkGuarantee(*tatras, TileKey::containing(49.18, 20.1, level), toleranceOf(level));
+    checkGuarantee(*tatras, TileKey::containing(49.18, 20.1, level), toleranceOf(level), 20000);
   }
 }
 
 TEST_CASE("Neighbours of one level share their edges' lattice points and normals") {
-  const PostSurface globe(40, roughGlobeM);
+  const PostSurface globe(16, roughGlobeM);
   size_t compared = 0;
   // The sides' fours: inside an octant, the 45 degree halving from below and above, the equator, lon 0, 90, 180, poles.
   for (const LatLon p : {LatLon{30, 30},
@@ -253,7 +253,7 @@ TEST_CASE("Neighbours of one level share their edges' lattice points and normals
                          {84.5, 179.9}}) {
     compared += checkSides(globe, TileKey::containing(p.latDeg, p.lonDeg, 6), 100.0);
   }
-  CHECK(compared > 500);
+  CHECK(compared > 400);
   for (int octant = 0; octant < kOctants; ++octant) {
     checkSides(PostSurface(2, roughGlobeM), TileKey::octantRoot(octant), 2000.0);
   }
