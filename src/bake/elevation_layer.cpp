@@ -295,7 +295,8 @@ void ElevationLayer::addPostLines(const TileBounds& region, std::vector<double>&
     }
   };
   for (const ElevationFile& file : files_) {
-    const DegreeRect rect = degreesOf(file.grid, kFadePosts);
+    // Half a post more, so that rounding does not lose the outermost line.
+    const DegreeRect rect = degreesOf(file.grid, kFadePosts + 0.5);
     for (const double turnDeg : {-720.0, -360.0, 0.0, 360.0}) {
       if (!overlaps(rect, region, turnDeg)) continue;
       add(lattice_.lat, rect.southDeg, rect.northDeg, region.southDeg, region.northDeg, 0, latDeg);

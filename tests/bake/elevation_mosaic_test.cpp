@@ -91,6 +91,11 @@ TEST_CASE("Outside every source is the sea, reached over sixteen posts") {
     last = height;
   }
   CHECK(mosaic->heightM(10 - 0.08, 20.5) == Approx(250).margin(1));
+  // The rim of the fade is a bend, so it is a post line.
+  const PostLines lines = mosaic->postLines({9.8, 9.9, 19.8, 19.9});
+  REQUIRE(!lines.latDeg.empty());
+  CHECK(lines.latDeg.front() == Approx(9.84).margin(1e-9));
+  CHECK(lines.lonDeg.front() == Approx(19.84).margin(1e-9));
 }
 
 TEST_CASE("Neighbouring files form one surface: no seam, rows that differ are averaged") {
