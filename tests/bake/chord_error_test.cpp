@@ -66,6 +66,17 @@ TEST_CASE("The worst point of a chord is found: beside a pole") {
   checkChords({88.0, 90.0, 0.0, 90.0}, 8, 20.0, 0.4, 8.0);
 }
 
+TEST_CASE("A chord's bend in longitude counts where the ground is steep") {
+  // A wall that runs north and south beneath a diagonal chord of 36 km: it bends 40 m sideways.
+  const PostSurface walls(1, [](double, double lonDeg) { return std::fmod(std::abs(lonDeg), 2.0) * 100'000.0; });
+  SampleGrid grid;
+  fillGrid(walls, SampleBlock{{40, 42, 10, 12}, 1.0}, 1e9, grid);
+  const ChordEnd a{40.1, 10.1, walls.heightM(40.1, 10.1)}, b{40.4, 10.4, walls.heightM(40.4, 10.4)};
+  ChordError found;
+  findChordError(grid, a, b, 100.0, found);
+  CHECK(found.errorM == Approx(denseErrorM(walls, a, b)).margin(1.0));
+}
+
 TEST_CASE("A chord outside the grid changes nothing") {
   const PostSurface surface(40, roughGlobeM);
   SampleGrid grid;
