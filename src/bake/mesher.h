@@ -14,7 +14,10 @@ struct MeshedTile {
 // `toleranceM` is the level's, so that two neighbours simplify their common edge alike: each edge unit (a side, or half
 // of a side where the columns double across it) is a function of the surface, the level and the tolerance alone.
 // meta.geometricErrorM is the true maximum over the tile, rounding of positions included; it is at most toleranceM
-// unless the tile runs out of 16-bit vertices.
+// unless the tile runs out of 16-bit vertices, or the ground is so steep (a wall, a source that ends without a fade)
+// that rounding to the lattice, sideways, is more than that. A bilinear cell whose corners are twisted by d takes about
+// d / (4 toleranceM) vertices: tolerances far below the twist of the posts cost more triangles than there are posts.
+// Thread: any number at once.
 MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM);
 
 }  // namespace eye
