@@ -13,7 +13,7 @@ namespace eye {
 // hills and 500 in the steepest mountains.
 inline constexpr int kLeafPosts = 8;
 // The finest tolerance for 3-arc-second posts and finer ones; coarser posts get proportionally more.
-inline constexpr double kFinestErrorM = 0.5;
+inline constexpr double kFinestErrorM = 1.0;
 
 // The sources outlive the plan. Thread: any number at once.
 struct BakePlan {
@@ -26,6 +26,7 @@ struct BakePlan {
   std::optional<TileBounds> region;  // refine only what meets it
 
   double toleranceM(int level) const;
+  double sampleToleranceM(int level) const;  // at posts and cell centres
   bool hasImagery(const TileKey& key) const;
   // Whether a child could show finer imagery than the tile.
   bool wantsFinerImagery(const TileKey& key) const;

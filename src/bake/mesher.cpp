@@ -67,14 +67,14 @@ void addSamples(const TileMesh& mesh, const SampleGrid& grid, size_t stride, dou
 }
 
 // All of a tile's surface in one grid.
-double refineWhole(const ElevationSurface& surface, const SampleBlock& block, double toleranceM, TileMesh& mesh,
-                   MeshRefiner& refiner) {
+double refineWhole(const ElevationSurface& surface, const SampleBlock& block, double toleranceM, double sampleToleranceM,
+                   TileMesh& mesh, MeshRefiner& refiner) {
   thread_local SampleGrid grid;
   fillGrid(surface, block, kBendShare * toleranceM, grid);
   const double inflation = mesh.frame().inflation, slackM = grid.bendM + 2.0 * mesh.quantumM();
   const double targetM = std::max(toleranceM - slackM, 0.0) / inflation;
-  addSamples(mesh, grid, 1, toleranceM, refiner);
-  refiner.insertSamples(kGreedyShare * targetM);
+  addSamples(mesh, grid, 1, sampleToleranceM, refiner);
+  refiner.insertSamples(std::min(kGreedyShare * targetM, sampleToleranceM));
   refiner.insertAlongEdges(grid, targetM);
   return refiner.greatestErrorM() * inflation + slackM;
 }
@@ -105,7 +105,8 @@ double refineInBlocks(const ElevationSurface& surface, const std::vector<SampleB
   return refiner.greatestErrorM() * inflation + slackM;
 }
 
-double refine(const ElevationSurface& surface, const TileKey& key, double toleranceM, double stepM, TileMesh& mesh) {
+double refine(const ElevationSurface& surface, const TileKey& key, double toleranceM, double sampleToleranceM,
+              double stepM, TileMesh& mesh) {
   thread_local MeshRefiner refiner;
   refiner.reset(mesh);
   const std::vector<SampleBlock> blocks = planBlocks(surface, measuredRegion(key, toleranceM, stepM), kBlockSide);
@@ -115,7 +116,7 @@ double refine(const ElevationSurface& surface, const TileKey& key, double tolera
     posts += (block.region.northDeg - block.region.southDeg) * (block.region.eastDeg - block.region.westDeg) /
              (block.spacingDeg * block.spacingDeg);
   }
-  if (blocks.size() == 1) return refineWhole(surface, blocks.front(), toleranceM, mesh, refiner);
+  if (blocks.size() == 1) return refineWhole(surface, blocks.front(), toleranceM, sampleToleranceM, mesh, refiner);
   return refineInBlocks(surface, blocks, posts, toleranceM, mesh, refiner);
 }
 
@@ -134,8 +135,9 @@ bool fitsSixteenBits(const std::vector<MeshVertex>& vertices, LatticePoint& orig
 uint16_t unorm16(double value) {
   return static_cast<uint16_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535.0));
 }
-int16_t snorm16(float value) {
-  return static_cast<int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
+// Ten bits are a tenth of a degree, and the rest as zeros is a byte a vertex less in the blob.
+int16_t snorm10in16(float value) {
+  return static_cast<int16_t>(64 * std::lround(std::clamp(value, -1.0f, 1.0f) * 511.0f));
 }
 
 std::vector<ChunkVertex> packVertices(const ElevationSurface& surface, const TileKey& key, const TileMesh& mesh,
@@ -152,7 +154,7 @@ std::vector<ChunkVertex> packVertices(const ElevationSurface& surface, const Til
     const TileParam param = paramFromLatLon(key, places[i]);
     const glm::vec2 normal = octahedralFromNormal(glm::vec3(normals[i]));
     packed.push_back(ChunkVertex{static_cast<int16_t>(p.x), static_cast<int16_t>(p.y), static_cast<int16_t>(p.z), 0,
-                                 unorm16(param.s), unorm16(param.t), snorm16(normal.x), snorm16(normal.y)});
+                                 unorm16(param.s), unorm16(param.t), snorm10in16(normal.x), snorm10in16(normal.y)});
   }
   return packed;
 }
@@ -199,7 +201,7 @@ void fillMeta(const TileKey& key, const TileMesh& mesh, double stepM, ChunkMeta&
 
 }  // namespace
 
-MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM) {
+MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM, double sampleToleranceM) {
   thread_local TileMesh mesh;
   const TileFrame frame = makeTileFrame(key);
   MeshedTile tile;
@@ -210,7 +212,7 @@ MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double 
     const double stepM = std::ldexp(latticeStepM(key.level()), shift);
     const TileBoundary boundary = makeBoundary(surface, key, toleranceM, stepM);
     mesh.reset(frame, stepM, boundary.loop);
-    tile.meta.geometricErrorM = refine(surface, key, toleranceM, stepM, mesh);
+    tile.meta.geometricErrorM = refine(surface, key, toleranceM, sampleToleranceM, stepM, mesh);
     if (!fitsSixteenBits(mesh.vertices(), tile.meta.originLattice)) continue;
     tile.meta.latticeShift = shift;
     tile.mesh.boundary = boundary.counts;

@@ -72,7 +72,7 @@ constexpr TatraPose kTatraPoses[] = {
 TEST_CASE("truth: eight views of the Tatra") {
   const std::string database = carpathiaDatabase();
   if (database.empty()) return;
-  static const HeightGrid grid = HeightGrid::fromHgtFolder(std::string(EYE_TEST_DATA) + "/dem/carpathia");
+  static const HeightGrid grid = HeightGrid::fromHgtFolder(testFile("carpathia"));
   for (const TatraPose& p : kTatraPoses) {
     const double groundM = grid.heightM(grid.rowOf(p.latDeg), grid.columnOf(p.lonDeg));
     checkPose(p.name, grid, database,
