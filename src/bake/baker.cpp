@@ -136,7 +136,7 @@ std::vector<Family> familiesOf(std::vector<TileKey> parents) {
 }  // namespace
 
 Result<StoredChunk> bakeTile(const BakePlan& plan, const TileKey& key) {
-  MeshedTile tile = meshTile(*plan.surface, key, plan.toleranceM(key.level()), plan.sampleToleranceM(key.level()));
+  MeshedTile tile = meshTile(*plan.surface, key, plan.toleranceM(key.level()));
   StoredChunk chunk;
   chunk.meta = tile.meta;
   chunk.meta.texelErrorM = plan.texelErrorM(key);

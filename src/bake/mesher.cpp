@@ -67,14 +67,14 @@ void addSamples(const TileMesh& mesh, const SampleGrid& grid, size_t stride, dou
 }
 
 // All of a tile's surface in one grid.
-double refineWhole(const ElevationSurface& surface, const SampleBlock& block, double toleranceM, double sampleToleranceM,
-                   TileMesh& mesh, MeshRefiner& refiner) {
+double refineWhole(const ElevationSurface& surface, const SampleBlock& block, double toleranceM, TileMesh& mesh,
+                   MeshRefiner& refiner) {
   thread_local SampleGrid grid;
   fillGrid(surface, block, kBendShare * toleranceM, grid);
   const double inflation = mesh.frame().inflation, slackM = grid.bendM + 2.0 * mesh.quantumM();
   const double targetM = std::max(toleranceM - slackM, 0.0) / inflation;
-  addSamples(mesh, grid, 1, sampleToleranceM, refiner);
-  refiner.insertSamples(std::min(kGreedyShare * targetM, sampleToleranceM));
+  addSamples(mesh, grid, 1, toleranceM, refiner);
+  refiner.insertSamples(kGreedyShare * targetM);
   refiner.insertAlongEdges(grid, targetM);
   return refiner.greatestErrorM() * inflation + slackM;
 }
@@ -105,8 +105,7 @@ double refineInBlocks(const ElevationSurface& surface, const std::vector<SampleB
   return refiner.greatestErrorM() * inflation + slackM;
 }
 
-double refine(const ElevationSurface& surface, const TileKey& key, double toleranceM, double sampleToleranceM,
-              double stepM, TileMesh& mesh) {
+double refine(const ElevationSurface& surface, const TileKey& key, double toleranceM, double stepM, TileMesh& mesh) {
   thread_local MeshRefiner refiner;
   refiner.reset(mesh);
   const std::vector<SampleBlock> blocks = planBlocks(surface, measuredRegion(key, toleranceM, stepM), kBlockSide);
@@ -116,7 +115,7 @@ double refine(const ElevationSurface& surface, const TileKey& key, double tolera
     posts += (block.region.northDeg - block.region.southDeg) * (block.region.eastDeg - block.region.westDeg) /
              (block.spacingDeg * block.spacingDeg);
   }
-  if (blocks.size() == 1) return refineWhole(surface, blocks.front(), toleranceM, sampleToleranceM, mesh, refiner);
+  if (blocks.size() == 1) return refineWhole(surface, blocks.front(), toleranceM, mesh, refiner);
   return refineInBlocks(surface, blocks, posts, toleranceM, mesh, refiner);
 }
 
@@ -201,7 +200,7 @@ void fillMeta(const TileKey& key, const TileMesh& mesh, double stepM, ChunkMeta&
 
 }  // namespace
 
-MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM, double sampleToleranceM) {
+MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM) {
   thread_local TileMesh mesh;
   const TileFrame frame = makeTileFrame(key);
   MeshedTile tile;
@@ -212,7 +211,7 @@ MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double 
     const double stepM = std::ldexp(latticeStepM(key.level()), shift);
     const TileBoundary boundary = makeBoundary(surface, key, toleranceM, stepM);
     mesh.reset(frame, stepM, boundary.loop);
-    tile.meta.geometricErrorM = refine(surface, key, toleranceM, sampleToleranceM, stepM, mesh);
+    tile.meta.geometricErrorM = refine(surface, key, toleranceM, stepM, mesh);
     if (!fitsSixteenBits(mesh.vertices(), tile.meta.originLattice)) continue;
     tile.meta.latticeShift = shift;
     tile.mesh.boundary = boundary.counts;

@@ -17,11 +17,7 @@ struct MeshedTile {
 // unless the tile runs out of 16-bit vertices, or the ground is so steep (a wall, a source that ends without a fade)
 // that rounding to the lattice, sideways, is more than that. A bilinear cell whose corners are twisted by d takes about
 // d / (4 toleranceM) vertices: tolerances far below the twist of the posts cost more triangles than there are posts.
-// Posts and cell centres inside the tile are within `sampleToleranceM` where that is less: in gentle ground, whose cells
-// are hardly twisted, that is the error nearly everywhere. Thread: any number at once.
-MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM, double sampleToleranceM);
-inline MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM) {
-  return meshTile(surface, key, toleranceM, toleranceM);
-}
+// Thread: any number at once.
+MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM);
 
 }  // namespace eye
