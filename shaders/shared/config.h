@@ -22,7 +22,8 @@
 #define EYE_AT_OUTWARD 8
 #define EYE_AT_TEXTURE_MAP 12
 
-// How far a skirt's lower rim moves outwards, as a share of its depth: enough to cover what two edges differ horizontally.
+// How far a skirt's lower rim moves outwards, as a share of its depth: enough to cover what two edges differ
+// horizontally.
 #define EYE_SKIRT_FLARE 0.5
 
 // Height over which the air, and the haze that it carries, thins out by e.

@@ -124,10 +124,7 @@ void addView(CLI::App& app, Options& o) {
       ->group(group);
   app.add_flag("--headless", o.headless, "No window; works without a display")->group(group);
   app.add_flag("--fullscreen", o.fullscreen, "The whole monitor (F11 switches)")->group(group);
-  app.add_option("--monitor", o.monitor, "Which monitor, from 0")
-      ->type_name("N")
-      ->check(within(0, 63))
-      ->group(group);
+  app.add_option("--monitor", o.monitor, "Which monitor, from 0")->type_name("N")->check(within(0, 63))->group(group);
   app.add_option_function<std::string>(
          "--vsync", [&o](const std::string& t) { o.vsync = onOff("--vsync", t); }, "on (default) or off")
       ->type_name("on/off")

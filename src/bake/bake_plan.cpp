@@ -20,14 +20,17 @@ constexpr int kNoFinerBesideData = 3;
 // The palette draws nothing sharper than two of its finest texels: its texels may be twice as large on screen.
 constexpr double kPaletteTexelWeight = 0.5;
 
-// A chunk is drawn where its parent's error is too large at its nearest point, so it is finer than needed at its far end,
-// the more so the larger it is for its error. Cells of 610 times their error draw the High Tatra at one pixel with 67,000
-// triangles, cells of 1,200 times with 114,000, of 2,400 times with 205,000. Leaves may be finer than that: few are drawn.
-constexpr double kCellHeightPerError = 610;
+// A chunk is drawn where its parent's error is too large at its nearest point, so it is finer than needed at its far
+// end, the more so the larger it is for its error, and small ones cost draws. Near the leaves a cell is 610 times its
+// error; further up, where a view shows most of its triangles, the ratio falls to 305. Leaves may be finer: few are
+// drawn.
+constexpr double kCellHeightPerError = 610, kLeastCellHeightPerError = 305;
+constexpr double kFallPerLevel = 2.0 / 2.25;  // errors grow by 2.25 a level until the least ratio is reached
 constexpr double kQuarterMeridianM = 10001966.0;
 
-double thriftyErrorM(int level) {
-  return kQuarterMeridianM * std::exp2(-level) / kCellHeightPerError;
+double thriftyErrorM(int level, int meshLevel) {
+  const double ratio = kCellHeightPerError * std::pow(kFallPerLevel, std::max(0, meshLevel - 1 - level));
+  return kQuarterMeridianM * std::exp2(-level) / std::max(ratio, kLeastCellHeightPerError);
 }
 
 double cellHeightDeg(int level) {
@@ -60,7 +63,7 @@ bool isFinerThanTexels(const BakePlan& plan, const TileBounds& region, int level
 
 double BakePlan::toleranceM(int level) const {
   if (level >= meshLevel) return finestErrorM;
-  return std::max(finestErrorM, thriftyErrorM(meshLevel)) * std::exp2(meshLevel - level);
+  return std::max(finestErrorM * std::exp2(meshLevel - level), thriftyErrorM(level, meshLevel));
 }
 
 bool BakePlan::wantsFinerImagery(const TileKey& key) const {
@@ -114,7 +117,8 @@ BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery,
   const double leafErrorM = kFinestErrorM * std::max(1.0, finestSpacingDeg / kThreeArcSecondsDeg);
   // A bake cut short at a coarser level is as exact there as an uncut one would be.
   const bool isCut = plan.meshLevel < naturalLevel;
-  plan.finestErrorM = options.errorM.value_or(isCut ? std::max(leafErrorM, thriftyErrorM(plan.meshLevel)) : leafErrorM);
+  plan.finestErrorM =
+      options.errorM.value_or(isCut ? std::max(leafErrorM, thriftyErrorM(plan.meshLevel, naturalLevel)) : leafErrorM);
   return plan;
 }
 

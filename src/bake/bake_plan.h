@@ -12,7 +12,8 @@ namespace eye {
 // A leaf spans about so many posts of its source.
 inline constexpr int kLeafPosts = 8;
 // The leaves' tolerance for 3-arc-second posts and finer ones; coarser posts get proportionally more. From 50 m above a
-// valley's floor, 99.998 % of pixels are right with 0.25 m and 99.0 % with 1 m, which is far less than the posts' own error.
+// valley's floor, 99.998 % of pixels are right with 0.25 m and 99.0 % with 1 m, which is far less than the posts' own
+// error.
 inline constexpr double kFinestErrorM = 0.25;
 
 // The sources outlive the plan. Thread: any number at once.

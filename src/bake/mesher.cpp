@@ -17,7 +17,7 @@ namespace {
 constexpr double kMaxGreedyPosts = 131072;
 constexpr double kBlockSide = 256;
 constexpr int kMaxRounds = 24;  // of measuring all blocks; each but the last inserts
-// The greedy phase sees posts and cell centres only, and edges between them are worse by a little.
+// The greedy phase over a part of the posts aims lower, so that few rounds over all of them follow.
 constexpr double kGreedyShare = 0.8;
 // Of the tolerance: how far the Earth may bend between samples.
 constexpr double kBendShare = 1.0 / 16.0;
@@ -74,7 +74,7 @@ double refineWhole(const ElevationSurface& surface, const SampleBlock& block, do
   const double inflation = mesh.frame().inflation, slackM = grid.bendM + 2.0 * mesh.quantumM();
   const double targetM = std::max(toleranceM - slackM, 0.0) / inflation;
   addSamples(mesh, grid, 1, toleranceM, refiner);
-  refiner.insertSamples(kGreedyShare * targetM);
+  refiner.insertSamples(targetM);
   refiner.insertAlongEdges(grid, targetM);
   return refiner.greatestErrorM() * inflation + slackM;
 }

@@ -1,4 +1,5 @@
-// Where an eye or aircraft is and how it is turned. Degrees at every outside edge; matrices are made from this in frames.h.
+// Where an eye or aircraft is and how it is turned. Degrees at every outside edge; matrices are made from this in
+// frames.h.
 #pragma once
 
 namespace eye {

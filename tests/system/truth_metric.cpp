@@ -40,7 +40,8 @@ PixelVerdict judge(const Neighbourhood& n, float renderedM) {
   if (std::isnan(renderedM)) return n.sky ? PixelVerdict::explained : PixelVerdict::skyBelowSkyline;
   if (!n.terrain) return PixelVerdict::terrainAboveSkyline;
   if (renderedM < n.nearestM * (1 - kWidening)) return PixelVerdict::tooNear;
-  // Sky is infinitely far: beside it a crest may be off by its pixel, and what shows behind it is as far as it happens to be.
+  // Sky is infinitely far: beside it a crest may be off by its pixel, and what shows behind it is as far as it happens
+  // to be.
   if (!n.sky && renderedM > n.farthestM * (1 + kWidening)) return PixelVerdict::tooFar;
   return PixelVerdict::explained;
 }
