@@ -53,19 +53,20 @@ float hazePerMetre(vec3 position_ecef) {
   float distanceM = max(length(position_ecef), 1e-3);
   float rise = dot(position_ecef, frame.up_ecef.xyz) / distanceM;
   float eyeHeightM = frame.up_ecef.w;
-  float inAirM = distanceM;
-  float topM = min(eyeHeightM, EYE_AIR_TOP_M);
   // The point's height, with the Earth's curvature.
-  float pointM = eyeHeightM + distanceM * rise + distanceM * distanceM * (1.0 - rise * rise) * (0.5 / EYE_EARTH_RADIUS_M);
-  if (eyeHeightM > EYE_AIR_TOP_M) {
-    // From space only the way below the top of the air counts. In Earth radii, for the floats' sake.
-    float r = frame.up_eye.w;
-    float top = 1.0 + EYE_AIR_TOP_M / EYE_EARTH_RADIUS_M;
-    float along = -r * rise;
-    float chord = sqrt(max(along * along - (r - top) * (r + top), 0.0));
-    inAirM = clamp(distanceM - (along - chord) * EYE_EARTH_RADIUS_M, 0.0, distanceM);
-    pointM = 0.0;
-  }
+  float lowM = eyeHeightM + distanceM * rise + distanceM * distanceM * (1.0 - rise * rise) * (0.5 / EYE_EARTH_RADIUS_M);
+  // From space only the way below the top of the air counts. In Earth radii, for the floats' sake.
+  float r = frame.up_eye.w;
+  float top = 1.0 + EYE_AIR_TOP_M / EYE_EARTH_RADIUS_M;
+  float along = -r * rise;
+  float chord = sqrt(max(along * along - (r - top) * (r + top), 0.0));
+  float lowerWayM = clamp(distanceM - (along - chord) * EYE_EARTH_RADIUS_M, 0.0, distanceM);
+  // Arithmetic instead of a branch: lavapipe compiles a shader anew for each value of a uniform that steers a branch,
+  // 50 ms in every frame of a moving eye.
+  float fromSpace = step(EYE_AIR_TOP_M, eyeHeightM);
+  float topM = min(eyeHeightM, EYE_AIR_TOP_M);
+  float inAirM = mix(distanceM, lowerWayM, fromSpace);
+  float pointM = mix(lowM, 0.0, fromSpace);
   // Mean density between the two heights: exact for an exponential; the trapezoid where the quotient loses its digits.
   float between = (topM - pointM) / EYE_AIR_SCALE_M;
   float density = exp(-pointM / EYE_AIR_SCALE_M);

@@ -134,7 +134,7 @@ void addView(CLI::App& app, Options& o) {
 
 void addRun(CLI::App& app, Options& o) {
   const char* group = "Run";
-  app.add_option("--frames", o.frames, "Stop after N frames")->type_name("N")->check(CLI::PositiveNumber)->group(group);
+  app.add_option("--frames", o.frames, "Stop after N frames")->type_name("N")->check(within(1, 1e15))->group(group);
   app.add_option("--duration", o.durationS, "Stop after S seconds")
       ->type_name("S")
       ->check(within(0.001, 1e9))
@@ -223,7 +223,12 @@ Result<void> applyConfig(CLI::App& app, const std::string& path) {
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames())
       if (name != "help" && name != "version" && name != "config") known.push_back(name);
+  // Two options that say the same thing win over both of the file's keys.
+  const auto given = [&](const char* name) { return app.get_option(name)->count() > 0; };
+  const bool stateGiven = given("--pose") || given("--host"), frustumGiven = given("--fov") || given("--frustum");
   for (const auto& [key, words] : *values) {
+    if ((stateGiven && (key == "pose" || key == "host")) || (frustumGiven && (key == "fov" || key == "frustum")))
+      continue;
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       const std::string nearest = nearestWord(key, known);
       return fail(ErrorKind::usage, fmt::format("{}: unknown key '{}'; {}", path, key,

@@ -1,8 +1,13 @@
 #include "app/run.h"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <limits>
 #include <thread>
 
@@ -71,6 +76,15 @@ std::vector<float> slantRange(std::span<const float> depth, const View& view) {
   return rangeM;
 }
 
+// That the folder of an output is there and may be written to.
+Result<void> checkFolder(const std::string& path) {
+  if (path.empty()) return {};
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (access(folder.empty() ? "." : folder.c_str(), W_OK) == 0) return {};
+  return fail(ErrorKind::io,
+              fmt::format("{}: cannot write there: {}; make the folder or choose another", path, std::strerror(errno)));
+}
+
 Result<void> writeLastFrame(const Options& options, const ImageGenerator& generator) {
   if (!options.screenshot.empty()) {
     const Result<void> written =
@@ -86,11 +100,12 @@ Result<void> writeLastFrame(const Options& options, const ImageGenerator& genera
 
 Result<std::unique_ptr<Recorder>> startRecorder(const Options& options, ImageGenerator& generator, double rateHz) {
   if (options.record.empty() && options.framesFolder.empty()) return std::unique_ptr<Recorder>();
-  return Recorder::create(RecorderOptions{.film = options.record,
-                                          .folder = options.framesFolder,
-                                          .widthPx = generator.renderer().widthPx(),
-                                          .heightPx = generator.renderer().heightPx(),
-                                          .rateHz = std::isfinite(rateHz) ? rateHz : kOfflineRateHz});
+  return Recorder::create(
+      RecorderOptions{.film = options.record,
+                      .folder = options.framesFolder,
+                      .widthPx = generator.renderer().widthPx(),
+                      .heightPx = generator.renderer().heightPx(),
+                      .rateHz = std::isfinite(rateHz) && !options.offline ? rateHz : kOfflineRateHz});
 }
 
 void reportRun(const RunSummary& summary, double startupMs) {
@@ -124,6 +139,9 @@ Result<void> run(const Options& given, int64_t startedNs) {
   nameThread("render");
 
   // Outputs that cannot be written are found out before the flight.
+  for (const std::string& path :
+       {options.screenshot, options.distanceMap, options.summary, options.trace, options.record})
+    if (const Result<void> writable = checkFolder(path); !writable) return writable;
   std::optional<StatisticsFile> stats;
   if (!options.stats.empty()) {
     Result<StatisticsFile> file = StatisticsFile::create(options.stats);

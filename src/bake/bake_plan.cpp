@@ -41,9 +41,12 @@ bool meets(const TileBounds& a, const TileBounds& b) {
   return a.southDeg < b.northDeg && b.southDeg < a.northDeg && a.westDeg < b.eastDeg && b.westDeg < a.eastDeg;
 }
 
+// By the same ground distance to all sides; not across the date line.
 TileBounds grown(const TileBounds& b, double byDeg) {
-  return {std::max(-90.0, b.southDeg - byDeg), std::min(90.0, b.northDeg + byDeg), std::max(-180.0, b.westDeg - byDeg),
-          std::min(180.0, b.eastDeg + byDeg)};
+  const double highestLatDeg = std::min(89.0, std::max(std::abs(b.southDeg), std::abs(b.northDeg)));
+  const double byLonDeg = byDeg / std::cos(radFromDeg(highestLatDeg));
+  return {std::max(-90.0, b.southDeg - byDeg), std::min(90.0, b.northDeg + byDeg),
+          std::max(-180.0, b.westDeg - byLonDeg), std::min(180.0, b.eastDeg + byLonDeg)};
 }
 
 // Size of the finest detail that pictures in the region can show, degrees; 0 where there is none to show.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bake/demo_airfield.h"
+#include "bake/demo_relief.h"
 #include "bake/ground_noise.h"
 #include "geo/demo_site.h"
 #include "geo/frames.h"
@@ -127,7 +128,11 @@ Result<DemoSources> makeDemoSources() {
   GeoGrid world = gridFor(-89.75, 89.75, -179.75, 179.75, 0.5);
   if (auto made = writeDemoRaster(sources.elevation[0], site); !made) return tl::unexpected(made.error());
   if (auto made = writeDemoRaster(sources.elevation[1], country); !made) return tl::unexpected(made.error());
-  if (auto made = writeDemoRaster(sources.elevation[2], world); !made) return tl::unexpected(made.error());
+  const std::optional<std::vector<float>> reliefM = installedReliefM(kInstalledRelief, world);
+  if (auto made = reliefM ? writeElevation(sources.elevation[2], world, *reliefM)
+                          : writeDemoRaster(sources.elevation[2], world);
+      !made)
+    return tl::unexpected(made.error());
   if (auto made = writeDemoAirfield(sources.imagery[0]); !made) return tl::unexpected(made.error());
   return sources;
 }

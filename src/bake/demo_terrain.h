@@ -1,4 +1,5 @@
-// The embedded demo: a made-up world around a runway, as rasters in memory for the ordinary bake. Always the same.
+// The embedded demo: a made-up world around a runway, as rasters in memory for the ordinary bake. Always the
+// same, but for the globe beyond it, which is the real one where its relief is installed (demo_relief.h).
 #pragma once
 
 #include <string>

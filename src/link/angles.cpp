@@ -34,7 +34,7 @@ Mat3d ecefFromBody(const Pose& pose) {
 
 Pose poseFromBody(const Geodetic& position, const Mat3d& ecefFromBody) {
   const Mat3d enuFromBody = glm::transpose(ecefFromEnu(position.latDeg, position.lonDeg)) * ecefFromBody;
-  const Vec3d forwardEnu = enuFromBody[0], rightEnu = enuFromBody[1], downEnu = enuFromBody[2];
+  const Vec3d &forwardEnu = enuFromBody[0], &rightEnu = enuFromBody[1], &downEnu = enuFromBody[2];
   const double level = std::hypot(forwardEnu.x, forwardEnu.y);
 
   Pose pose;

@@ -105,7 +105,7 @@ std::optional<std::span<const std::byte>> ipv4Packet(std::span<const std::byte> 
 std::optional<CapturedDatagram> udpDatagram(std::span<const std::byte> packet) {
   ByteReader ip(packet, std::endian::big);
   const uint8_t versionAndLength = ip.u8();
-  const size_t headerBytes = (versionAndLength & 0x0fu) * 4u;
+  const size_t headerBytes = size_t{versionAndLength & 0x0fu} * 4;
   ip.skip(5);  // service, total length (offloading leaves it 0), identification
   const uint16_t fragment = ip.u16();
   ip.skip(1);  // time to live

@@ -130,3 +130,13 @@ TEST_CASE("every documented key of the example configuration is known") {
   INFO(parsed.text);
   CHECK_FALSE(parsed.exitStatus);
 }
+
+TEST_CASE("an option wins over the file's keys that say the same thing in another way") {
+  const TomlFile file("pose = \"1,2,3,4,5,6\"\nfrustum = \"-30,30,-20,20\"\n");
+  const ParsedOptions parsed = parse({"--config", file.path.c_str(), "--host", "demo://", "--fov", "40"});
+  INFO(parsed.text);
+  REQUIRE_FALSE(parsed.exitStatus);
+  CHECK(parsed.options.hosts == std::vector<std::string>{"demo://"});
+  CHECK(parsed.options.fovDeg == 40);
+  CHECK_FALSE(parsed.options.frustumDeg);
+}

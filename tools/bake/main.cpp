@@ -67,6 +67,14 @@ std::string checkTextureSize(const std::string& text) {
   return valid ? "" : "'" + text + "' is no power of two from 16 to 2048";
 }
 
+// CLI::Range lets NaN through, since NaN is not less than anything.
+std::string checkError(const std::string& text) {
+  char* end = nullptr;
+  const double errorM = std::strtod(text.c_str(), &end);
+  const bool valid = *end == '\0' && errorM >= 0.001 && errorM <= 10000;
+  return valid ? "" : "'" + text + "' is no error from 0.001 to 10000 metres";
+}
+
 void addCommonOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--out", arguments.job.out, "The database to write; it must not exist, but for --resume")
       ->type_name("FILE.eyt");
@@ -92,9 +100,9 @@ void addBakeOptions(CLI::App& app, Arguments& arguments) {
       ->type_name("N");
   app.add_option(
          "--error", job.plan.errorM,
-         "Greatest error of the finest level in metres; default: 0.5 for 3-arc-second posts and finer, more for "
+         "Greatest error of the finest level in metres; default: 0.25 for 3-arc-second posts and finer, more for "
          "coarser ones")
-      ->check(CLI::Range(0.001, 10000.0))
+      ->check(CLI::Validator(checkError, "0.001..10000"))
       ->type_name("M");
   app.add_option("--texture-size", job.plan.textureSize, "Texels along a tile's edge, a power of two (default 256)")
       ->check(CLI::Validator(checkTextureSize, "POWER OF TWO"))
