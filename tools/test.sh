@@ -1,10 +1,16 @@
 #!/usr/bin/env bash
-# Everything that is checked: installs what is missing, builds, lints, runs the sanitizers over the modules that read
-# foreign data or share memory between threads, then every test. The last lines are ctest's summary.
-#   tools/test.sh [options of ctest]
+# Everything that is checked: installs what is missing, builds, lints, then every test. The last lines are ctest's summary.
+#   tools/test.sh [--sanitizers] [options of ctest]
+# --sanitizers: before that the modules that read foreign data or share memory between threads, under ASan and UBSan and
+# under TSan: three more builds' time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=$(nproc)
+sanitizers=no
+if [ "${1:-}" = "--sanitizers" ]; then
+  sanitizers=yes
+  shift
+fi
 
 step() { printf '\n== %s (%d s so far)\n' "$1" "$SECONDS"; }
 
@@ -27,8 +33,10 @@ tools/lint.sh
 
 # A report of a sanitizer ends the program with an error, so it ends this script.
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 TSAN_OPTIONS=halt_on_error=1
-sanitize asan base geo terrain bake paging link
-sanitize tsan telemetry paging link
+if [ "$sanitizers" = yes ]; then
+  sanitize asan base geo terrain bake paging link
+  sanitize tsan telemetry paging link
+fi
 
 step "every test"
 # Two at a time; those that draw or measure hold a lock and go one by one.
