@@ -41,17 +41,18 @@ const FlightPath& takeoff() {
   return path;
 }
 
-// Out of the northern basin through a valley, over a saddle of 1,300 m and down to the airfield.
+// Low over the northern basin, up the wall of the mountains, over their ridge of 2,000 m and down to the airfield.
 const FlightPath& lowLevel() {
-  static const FlightPath path({placeAt(-2'000, 28'000, 520),
+  static const FlightPath path({placeAt(-2'000, 28'000, 300),
                                 235,
                                 170,
-                                {{40, 170, 0, 0},
-                                 {22, 170, -2.2, 0},
-                                 {26, 165, 0, 8},
-                                 {30, 160, -0.3, 32},
-                                 {10, 165, -2, -10},
-                                 {34, 175, 0, -30}}});
+                                {{28, 170, 0, 0},
+                                 {12, 170, 0, 40},
+                                 {22, 170, -2.2, 42},
+                                 {26, 165, 0, 24},
+                                 {30, 160, -0.3, -10},
+                                 {10, 165, -2, -30},
+                                 {34, 175, 0, -40}}});
   return path;
 }
 
