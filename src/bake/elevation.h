@@ -10,7 +10,7 @@
 
 namespace eye {
 
-// Post lines of the finest source that meets a region: the surface is bilinear between them (exactly so inside one
+// Post lines of every source that shows in a region: the surface is bilinear between them (exactly so inside one
 // source), so a mesh that is right at the posts, and along its own edges, is right everywhere.
 struct PostLines {
   std::vector<double> latDeg, lonDeg;  // ascending, strictly inside the region asked for
