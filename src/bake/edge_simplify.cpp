@@ -208,9 +208,8 @@ TileBoundary makeBoundary(const ElevationSurface& surface, const TileKey& key, d
   const TileBounds b = key.bounds();
   const Side poleward = key.isSouthern() ? Side::south : Side::north;
   TileBoundary boundary;
-  const std::array<Side, 4> sides = loopSides(key);
-  for (size_t i = 0; i < sides.size(); ++i) {
-    const Side side = sides[i];
+  for (size_t i = 0; i < kSides.size(); ++i) {
+    const Side side = kSides[i];
     if (key.isPolar() && side == poleward) continue;  // a point
     std::vector<EdgeUnit> units;
     if (side == Side::east || side == Side::west) {

@@ -39,7 +39,7 @@ Result<LoadedChunk> loadChunk(const DatabaseReader& reader, const TileKey& key) 
     return tl::unexpected(damaged(reader, key, "too many vertices for skirts"));
   loaded.mesh = std::move(*mesh);
   loaded.surfaceIndexCount = static_cast<uint32_t>(loaded.mesh.indices.size());
-  loaded.skirts = appendSkirts(key, loaded.mesh);
+  loaded.skirts = appendSkirts(loaded.mesh);
 
   if (loaded.meta.hasImagery) {
     Result<std::vector<uint8_t>> texels = decodeImagery(stored->imagery, reader.info().textureSize);

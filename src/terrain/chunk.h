@@ -39,18 +39,14 @@ struct ChunkVertex {
 static_assert(sizeof(ChunkVertex) == 16);
 
 // Counterclockwise triangles seen from above. The first sum(boundary) vertices are the boundary loop, counterclockwise
-// from the cell's south-west corner (in a southern pole cell: the pole): side i's vertices start at the sum of the
-// counts before it, its last vertex is the next side's first. Order of sides: the loop's (see loopSides).
+// from the cell's south-west corner (in a southern pole cell: the pole), side by side in the order of kSides: a side's
+// vertices start at the sum of the counts before it, its last vertex is the next side's first.
 struct ChunkMesh {
   std::vector<ChunkVertex> vertices;
   std::vector<uint16_t> indices;
-  // Vertices of the loop's sides, without each side's last; 0 for a pole cell's poleward side, which is a point.
+  // By Side, without each side's last; 0 for a pole cell's poleward side, which is a point.
   std::array<uint16_t, 4> boundary{};
 };
-
-// The sides in the order of the boundary loop: south, east, north, west, the order of Side, in every cell. A pole
-// cell's poleward side keeps its place there, with no vertices.
-std::array<Side, 4> loopSides(const TileKey& key);
 
 struct OrientedBox {
   Vec3d centreEcefM{};
@@ -87,7 +83,7 @@ struct ChunkMeta {
 struct SkirtRange {
   uint32_t firstIndex = 0, indexCount = 0;
 };
-std::array<SkirtRange, 4> appendSkirts(const TileKey& key, ChunkMesh& mesh);  // by Side
+std::array<SkirtRange, 4> appendSkirts(ChunkMesh& mesh);  // by Side
 
 glm::vec2 octahedralFromNormal(const glm::vec3& unit);
 glm::vec3 normalFromOctahedral(const glm::vec2& octahedral);

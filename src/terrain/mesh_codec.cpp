@@ -65,10 +65,9 @@ Result<MeshHeader> readHeader(ByteReader& in, const TileKey& key) {
   if (loop < 3 || loop > header.vertexCount || header.vertexCount + loop > kMaxVertices) {
     return damaged(fmt::format("{} vertices with a boundary of {}", header.vertexCount, loop));
   }
-  const std::array<Side, 4> sides = loopSides(key);
   const Side poleward = key.isSouthern() ? Side::south : Side::north;
-  for (size_t i = 0; i < sides.size(); ++i) {
-    const bool isPoint = key.isPolar() && sides[i] == poleward;
+  for (size_t i = 0; i < kSides.size(); ++i) {
+    const bool isPoint = key.isPolar() && kSides[i] == poleward;
     if (isPoint != (header.boundary[i] == 0)) return damaged("the boundary's sides are not those of the tile");
   }
   if (header.indexCount < 3 || header.indexCount % 3 != 0 || header.indexCount > kMaxIndices) {

@@ -3,12 +3,7 @@
 
 namespace eye {
 
-std::array<Side, 4> loopSides(const TileKey&) {
-  return kSides;
-}
-
-std::array<SkirtRange, 4> appendSkirts(const TileKey& key, ChunkMesh& mesh) {
-  const std::array<Side, 4> sides = loopSides(key);
+std::array<SkirtRange, 4> appendSkirts(ChunkMesh& mesh) {
   const size_t surfaceVertices = mesh.vertices.size();
   size_t loopVertices = 0;
   for (const uint16_t count : mesh.boundary) loopVertices += count;
@@ -19,10 +14,10 @@ std::array<SkirtRange, 4> appendSkirts(const TileKey& key, ChunkMesh& mesh) {
   for (size_t i = 0; i < loopVertices; ++i) mesh.vertices.push_back(mesh.vertices[i]);
   std::array<SkirtRange, 4> ranges{};
   size_t sideBegin = 0;
-  for (size_t side = 0; side < sides.size(); ++side) {
+  for (size_t side = 0; side < kSides.size(); ++side) {
     const size_t edges = mesh.boundary[side];
-    const uint16_t bit = static_cast<uint16_t>(1u << static_cast<unsigned>(sides[side]));
-    SkirtRange& range = ranges[static_cast<size_t>(sides[side])];
+    const uint16_t bit = static_cast<uint16_t>(1u << side);
+    SkirtRange& range = ranges[side];
     range.firstIndex = static_cast<uint32_t>(mesh.indices.size());
     for (size_t i = sideBegin; i < sideBegin + edges; ++i) {
       const size_t next = (i + 1) % loopVertices;

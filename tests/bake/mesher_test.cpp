@@ -111,14 +111,13 @@ struct SidePoint {
 
 // A side's points west to east or south to north.
 std::vector<SidePoint> sidePoints(const MeshedTile& tile, Side side) {
-  const std::array<Side, 4> sides = loopSides(tile.meta.key);
   const std::vector<LatticePoint> lattice = latticeOf(tile);
   size_t begin = 0, loop = 0;
   for (const uint16_t count : tile.mesh.boundary) loop += count;
   std::vector<SidePoint> points;
   for (size_t i = 0; i < 4; ++i) {
     const size_t count = tile.mesh.boundary[i];
-    if (sides[i] == side && count > 0) {
+    if (kSides[i] == side && count > 0) {
       for (size_t k = begin; k <= begin + count; ++k) {
         const ChunkVertex& v = tile.mesh.vertices[k % loop];
         points.push_back({lattice[k % loop], v.normalU, v.normalV});

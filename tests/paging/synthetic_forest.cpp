@@ -81,16 +81,15 @@ ForestChunk makeForestChunk(const TileKey& key, bool isRefined, bool hasImagery)
     meta.maxHeightM = std::max(meta.maxHeightM, heightM + stepM);
   };
   const Side poleward = key.isSouthern() ? Side::south : Side::north;
-  const std::array<Side, 4> sides = loopSides(key);
-  for (size_t s = 0; s < sides.size(); ++s) {
-    if (key.isPolar() && sides[s] == poleward) continue;
+  for (size_t s = 0; s < kSides.size(); ++s) {
+    if (key.isPolar() && kSides[s] == poleward) continue;
     chunk.mesh.boundary[s] = kEdges;
     for (int i = 0; i < kEdges; ++i) {
       const double along = static_cast<double>(i) / kEdges;
-      if (sides[s] == Side::south) add(along, 0);
-      if (sides[s] == Side::east) add(1, along);
-      if (sides[s] == Side::north) add(1 - along, 1);
-      if (sides[s] == Side::west) add(0, 1 - along);
+      if (kSides[s] == Side::south) add(along, 0);
+      if (kSides[s] == Side::east) add(1, along);
+      if (kSides[s] == Side::north) add(1 - along, 1);
+      if (kSides[s] == Side::west) add(0, 1 - along);
     }
   }
   const auto loop = static_cast<uint16_t>(chunk.mesh.vertices.size());

@@ -86,7 +86,7 @@ MadeChunk makeChunk(const Patch& patch, const HeightFunction& heightM, std::vect
   const auto side = static_cast<uint16_t>(n);
   mesh.boundary = {side, side, side, side};
   made.loaded.surfaceIndexCount = static_cast<uint32_t>(mesh.indices.size());
-  made.loaded.skirts = appendSkirts(TileKey::octantRoot(0), mesh);  // any ordinary cell's order of sides
+  made.loaded.skirts = appendSkirts(mesh);
   made.loaded.texels = std::move(texels);
 
   made.draw.skirts = made.loaded.skirts;
