@@ -3,10 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.h"
 
-layout(location = 0) out vec3 outRay_eye;  // z = 1
-
 void main() {
   vec2 ndc = vec2(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0);
   gl_Position = vec4(ndc, EYE_CLEAR_DEPTH, 1.0);
-  outRay_eye = vec3(frame.ray_eye.xy + ndc * frame.ray_eye.zw, 1.0);
 }

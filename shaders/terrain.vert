@@ -17,9 +17,8 @@ layout(location = EYE_AT_OUTWARD) in vec3 inOutward_ecef[4];
 layout(location = EYE_AT_TEXTURE_MAP) in vec4 inTextureMap;
 
 layout(location = 0) out vec2 outTexture;
-layout(location = 1) out vec4 outLight;  // sunlight, skylight, haze per metre, how far the haze is lit
-layout(location = 2) out vec3 outPosition_ecef;
-layout(location = 3) flat out uint outLayer;
+layout(location = 1) out vec4 outLight;  // sunlight, skylight, haze per metre (base 2), how far the haze is lit
+layout(location = 2) flat out uint outLayer;
 
 vec3 normalFromOctahedral(vec2 o) {
   vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
@@ -51,9 +50,8 @@ void main() {
   // leave a third of that, so that terrain stays faintly visible.
   outLight.x = max(dot(normal, frame.sun_ecef.xyz), 0.0) * smoothstep(-0.02, 0.06, sunHeight);
   outLight.y = (0.6 + 0.4 * dot(normal, up)) * (0.3 + 0.7 * lit);
-  outLight.z = hazePerMetre(position_ecef);
+  outLight.z = hazePerMetre(position_ecef) * EYE_LOG2_E;
   outLight.w = lit;
-  outPosition_ecef = position_ecef;
   outTexture = inParam * inTextureMap.xy + inTextureMap.zw;
   outLayer = inLayer;
 }

@@ -33,5 +33,6 @@
 // Column of air along a level ray over that of a vertical one, from the ground: sqrt(pi R / 2 H).
 #define EYE_LEVEL_COLUMN 35.4
 #define EYE_EARTH_RADIUS_M 6371000.0
+#define EYE_LOG2_E 1.44269504
 
 #endif

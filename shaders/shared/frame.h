@@ -4,3 +4,6 @@
 #include "shared/types.h"
 
 layout(set = 0, binding = EYE_BIND_FRAME, scalar) uniform FrameBlock { FrameData frame; };
+
+// Of a point of the picture, pixels; z = 1.
+vec3 rayThrough(vec2 pixel) { return vec3(frame.ray_eye.xy + pixel * frame.ray_eye.zw, 1.0); }

@@ -31,7 +31,7 @@ static_assert(sizeof(DrawData) == 128 && alignof(DrawData) == 4);
 // Colours are as displayed, not linear. Scalar layout; every row is 16 bytes.
 struct FrameData {
   mat4 clipFromEcef;  // of positions relative to the eye: rotation and projection, no translation
-  vec4 ray_eye;       // the view ray through a point of the picture, z = 1: xy + ndc * zw
+  vec4 ray_eye;       // the view ray through a point of the picture, z = 1: xy + pixel * zw
   vec4 up_eye;        // w: the eye's distance from the Earth's centre, in Earth radii
   vec4 up_ecef;       // w: the eye's height above the ellipsoid, metres
   vec4 sun_eye;       // towards the sun; w: density of the air at the eye, over the ground's

@@ -79,8 +79,8 @@ shader::FrameData frameData(const FrameInput& input) {
 
   shader::FrameData frame;
   frame.clipFromEcef = clipFromEcef(view);
-  frame.ray_eye = vec4((f.tanLeft + f.tanRight) / 2, -(f.tanTop + f.tanBottom) / 2, (f.tanRight - f.tanLeft) / 2,
-                       (f.tanTop - f.tanBottom) / 2);
+  frame.ray_eye =
+      vec4(f.tanLeft, -f.tanTop, (f.tanRight - f.tanLeft) / view.widthPx, (f.tanTop - f.tanBottom) / view.heightPx);
   frame.up_eye = vec4(vec3(view.eyeFromEcef * upEcef), static_cast<float>(radiusM / kEarthRadiusM));
   frame.up_ecef = vec4(vec3(upEcef), static_cast<float>(eye.altM));
   frame.sun_eye = vec4(vec3(view.eyeFromEcef * sunEcef), static_cast<float>(density(eye.altM)));
