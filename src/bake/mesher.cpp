@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <meshoptimizer.h>
-
 #include "bake/mesh_bounds.h"
 #include "bake/mesh_refine.h"
 #include "bake/surface_normal.h"
+#include "terrain/clusters.h"
 
 namespace eye {
 namespace {
@@ -158,27 +157,26 @@ std::vector<ChunkVertex> packVertices(const ElevationSurface& surface, const Til
   return packed;
 }
 
-// Triangles in an order that a vertex cache likes, interior vertices in the order of their first use.
-void orderForFetch(const Triangulation& triangulation, size_t loopSize, ChunkMesh& mesh) {
-  std::vector<uint32_t> corners;
+void fillIndices(const Triangulation& triangulation, std::vector<uint16_t>& indices) {
+  indices.clear();
   for (const Triangulation::Triangle& t : triangulation.triangles()) {
-    for (const int32_t v : t.vertex) corners.push_back(static_cast<uint32_t>(v));
+    for (const int32_t v : t.vertex) indices.push_back(static_cast<uint16_t>(v));
   }
-  std::vector<uint32_t> ordered(corners.size());
-  meshopt_optimizeVertexCache(ordered.data(), corners.data(), corners.size(), mesh.vertices.size());
+}
 
+// Interior vertices in the order of their first use, behind the loop's.
+void orderForFetch(size_t loopSize, ChunkMesh& mesh) {
   constexpr uint32_t kUnused = ~uint32_t{0};
   std::vector<uint32_t> newIndex(mesh.vertices.size(), kUnused);
   for (size_t i = 0; i < loopSize; ++i) newIndex[i] = static_cast<uint32_t>(i);
   std::vector<ChunkVertex> vertices(mesh.vertices.begin(),
                                     mesh.vertices.begin() + static_cast<std::ptrdiff_t>(loopSize));
-  mesh.indices.clear();
-  for (const uint32_t corner : ordered) {
+  for (uint16_t& corner : mesh.indices) {
     if (newIndex[corner] == kUnused) {
       newIndex[corner] = static_cast<uint32_t>(vertices.size());
       vertices.push_back(mesh.vertices[corner]);
     }
-    mesh.indices.push_back(static_cast<uint16_t>(newIndex[corner]));
+    corner = static_cast<uint16_t>(newIndex[corner]);
   }
   EYE_CHECK(vertices.size() == mesh.vertices.size());  // a triangulation uses every vertex
   mesh.vertices = std::move(vertices);
@@ -216,8 +214,10 @@ MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double 
     tile.meta.latticeShift = shift;
     tile.mesh.boundary = boundary.counts;
     tile.mesh.vertices = packVertices(surface, key, mesh, tile.meta.originLattice);
-    orderForFetch(mesh.triangulation(), mesh.loopSize(), tile.mesh);
     fillMeta(key, mesh, stepM, tile.meta);
+    fillIndices(mesh.triangulation(), tile.mesh.indices);
+    buildClusters(placeOf(tile.meta), tile.mesh);
+    orderForFetch(mesh.loopSize(), tile.mesh);
     return tile;
   }
 }

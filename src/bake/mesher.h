@@ -8,7 +8,7 @@ namespace eye {
 
 struct MeshedTile {
   ChunkMeta meta;  // all but texelErrorM, childCount and hasImagery
-  ChunkMesh mesh;  // without skirts; vertex order as ChunkMesh says, triangles in cache order
+  ChunkMesh mesh;  // without skirts; vertex order as ChunkMesh says, triangles in clusters
 };
 
 // `toleranceM` is the level's, so that two neighbours simplify their common edge alike: each edge unit (a side, or half

@@ -36,7 +36,8 @@ ParamMap parentFromChild(const TileKey& parent, const TileKey& child) {
 
 size_t LoadedChunk::bytes() const {
   return sizeof(LoadedChunk) + mesh.vertices.capacity() * sizeof(ChunkVertex) +
-         mesh.indices.capacity() * sizeof(uint16_t) + texels.capacity();
+         mesh.indices.capacity() * sizeof(uint16_t) + mesh.clusters.capacity() * sizeof(ChunkCluster) +
+         texels.capacity();
 }
 
 std::optional<uint32_t> TerrainCache::find(const TileKey& key) const {

@@ -38,12 +38,28 @@ struct ChunkVertex {
 };
 static_assert(sizeof(ChunkVertex) == 16);
 
+// A run of a chunk's surface triangles with bounds, for culling. Bounds are quantised outward; terrain/clusters.h makes
+// and reads them.
+struct ChunkCluster {
+  uint32_t firstIndex = 0, indexCount = 0;  // into ChunkMesh::indices; the runs lie behind one another and cover the
+                                            // surface
+  // 0..65535 over the extent of the chunk's own OrientedBox along its axes: centre + axis * (2 * q / 65535 - 1).
+  std::array<uint16_t, 3> boxMin{}, boxMax{};
+  // All triangles face away from the eye where dot(c - eye, axis) >= cutoff * |c - eye| + r, with c and r the cluster
+  // box's centre and half diagonal, axis = coneAxis / 127 (ecef, unit within rounding), cutoff = coneCutoff / 127. A
+  // cluster that never does so has the axis 0 and the cutoff 127, with which the test never holds.
+  std::array<int8_t, 3> coneAxis{};
+  int8_t coneCutoff = 127;
+  bool operator==(const ChunkCluster&) const = default;
+};
+
 // Counterclockwise triangles seen from above. The first sum(boundary) vertices are the boundary loop, counterclockwise
 // from the cell's south-west corner (in a southern pole cell: the pole), side by side in the order of kSides: a side's
 // vertices start at the sum of the counts before it, its last vertex is the next side's first.
 struct ChunkMesh {
   std::vector<ChunkVertex> vertices;
   std::vector<uint16_t> indices;
+  std::vector<ChunkCluster> clusters;  // of the surface, never of skirts
   // By Side, without each side's last; 0 for a pole cell's poleward side, which is a point.
   std::array<uint16_t, 4> boundary{};
 };

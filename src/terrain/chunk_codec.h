@@ -15,7 +15,7 @@ namespace eye {
 using Blob = std::vector<std::byte>;
 
 Blob encodeMesh(const ChunkMesh& mesh);
-// Checks counts, index ranges, the boundary loop and that no index is out of range.
+// Checks counts, the boundary loop, that no index is out of range and that the clusters' runs cover the triangles.
 Result<ChunkMesh> decodeMesh(std::span<const std::byte> blob, const TileKey& key);
 
 // `rgb`: size * size * 3 bytes, row 0 at t = 0 (south), texel (i, j) centred on s = i / (size - 1), t = j / (size - 1).

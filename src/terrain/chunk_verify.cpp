@@ -1,5 +1,7 @@
 #include "terrain/chunk_verify.h"
 
+#include "terrain/clusters.h"
+
 namespace eye {
 namespace {
 
@@ -14,6 +16,22 @@ bool boxHolds(const OrientedBox& box, const Vec3d& pointEcefM) {
     if (alongM > halfM + kToleranceM) return false;
   }
   return true;
+}
+
+Result<void> checkClusters(const ChunkMesh& mesh, const ChunkMeta& meta) {
+  for (const ChunkCluster& cluster : mesh.clusters) {
+    const OrientedBox box = clusterBox(meta.box, cluster);
+    for (size_t i = cluster.firstIndex; i < cluster.firstIndex + cluster.indexCount; ++i) {
+      const ChunkVertex& vertex = mesh.vertices[mesh.indices[i]];
+      const LatticePoint point = meta.originLattice + LatticePoint(vertex.x, vertex.y, vertex.z);
+      if (!boxHolds(box, ecefFromLattice(point, meta.stepM()))) {
+        return fail(ErrorKind::badData, "a triangle lies outside its cluster's box");
+      }
+    }
+    if (!coneHolds(mesh, cluster))
+      return fail(ErrorKind::badData, "a triangle's normal lies outside its cluster's cone");
+  }
+  return {};
 }
 
 }  // namespace
@@ -39,7 +57,7 @@ Result<void> checkContents(const StoredChunk& chunk, int textureSize) {
       return fail(ErrorKind::badData, "a vertex lies outside its heights");
     }
   }
-  return {};
+  return checkClusters(*mesh, meta);
 }
 
 }  // namespace eye

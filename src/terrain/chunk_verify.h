@@ -6,7 +6,8 @@
 
 namespace eye {
 
-// Both blobs decode, and box, sphere and heights hold every vertex. The error is without file and tile.
+// Both blobs decode, box, sphere and heights hold every vertex, clusters' boxes and cones their triangles. The error is
+// without file and tile.
 Result<void> checkContents(const StoredChunk& chunk, int textureSize);
 
 }  // namespace eye

@@ -13,7 +13,7 @@
 
 namespace eye {
 
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;  // 2: meshes have clusters
 
 // Of the whole database; written once when it is created, `complete` when the bake ends.
 struct DatabaseInfo {

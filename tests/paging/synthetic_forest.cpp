@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <random>
 
+#include "terrain/clusters.h"
+
 namespace eye {
 namespace {
 
@@ -106,6 +108,7 @@ ForestChunk makeForestChunk(const TileKey& key, bool isRefined, bool hasImagery)
   for (const Vec3d& v : chunk.verticesEcefM)
     meta.sphereRadiusM = std::max(meta.sphereRadiusM, glm::distance(v, meta.sphereCentreEcefM) + 0.01);
   meta.horizonPointScaled = horizonPoint(chunk.verticesEcefM, meta.box.centreEcefM);
+  buildClusters(placeOf(meta), chunk.mesh);
   return chunk;
 }
 

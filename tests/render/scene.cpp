@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "terrain/chunk_codec.h"
+#include "terrain/clusters.h"
 
 namespace eye::test {
 namespace {
@@ -45,6 +46,21 @@ void addMips(std::vector<uint8_t>& chain, int size) {
   }
 }
 
+// Along the axes east, north and up, a millimetre wider than the vertices.
+OrientedBox boxAround(const ChunkMesh& mesh, const LatticePoint& origin, double stepM, const Mat3d& axes) {
+  const Vec3d originM = ecefFromLattice(origin, stepM);
+  Vec3d low(1e9), high(-1e9);
+  for (const ChunkVertex& v : mesh.vertices) {
+    const Vec3d enu = (Vec3d(v.x, v.y, v.z) * stepM) * axes;
+    low = glm::min(low, enu);
+    high = glm::max(high, enu);
+  }
+  OrientedBox box;
+  box.centreEcefM = originM + axes * ((low + high) / 2.0);
+  for (int i = 0; i < 3; ++i) box.halfAxesEcefM[static_cast<size_t>(i)] = axes[i] * ((high - low)[i] / 2.0 + 1e-3);
+  return box;
+}
+
 }  // namespace
 
 MadeChunk makeChunk(const Patch& patch, const HeightFunction& heightM, std::vector<uint8_t> texels) {
@@ -85,6 +101,9 @@ MadeChunk makeChunk(const Patch& patch, const HeightFunction& heightM, std::vect
   }
   const auto side = static_cast<uint16_t>(n);
   mesh.boundary = {side, side, side, side};
+  made.loaded.meta.box = boxAround(mesh, made.origin, patch.stepM, ecefFromEnu(midLat, midLon));
+  made.loaded.meta.originLattice = made.origin;
+  buildClusters({made.loaded.meta.box, made.origin, patch.stepM}, mesh);
   made.loaded.surfaceIndexCount = static_cast<uint32_t>(mesh.indices.size());
   made.loaded.skirts = appendSkirts(mesh);
   made.loaded.texels = std::move(texels);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <random>
 
+#include "terrain/clusters.h"
+
 namespace eye {
 namespace {
 
@@ -119,6 +121,7 @@ SyntheticMesh syntheticMesh(const TileKey& key, int edges) {
   out.mesh.indices = outline.indices;
   out.mesh.boundary = outline.boundary;
   setBounds(pointsEcefM, middle, meta);
+  buildClusters(placeOf(meta), out.mesh);
   return out;
 }
 
