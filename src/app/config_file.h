@@ -9,11 +9,13 @@
 
 namespace eye {
 
-// Values as the command line would have them: `size = "800x600"`, `sse = 1.5`, `headless = true`, `host = ["a", "b"]`.
-using ConfigValues = std::map<std::string, std::vector<std::string>>;
+// Values in the words of the command line: `size = "800x600"`, `sse = 1.5`, `headless = true`, `host = ["a", "b"]`.
+enum class ConfigType { text, number, flag };
+struct ConfigWord {
+  std::string text;
+  ConfigType type = ConfigType::text;
+};
+using ConfigValues = std::map<std::string, std::vector<ConfigWord>>;
 Result<ConfigValues> readConfigFile(const std::string& path);
-
-// The known word nearest to `word` by edit distance, for "did you mean"; empty where none is near.
-std::string nearestWord(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace eye

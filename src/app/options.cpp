@@ -1,5 +1,7 @@
 #include "app/options.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -9,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/config_file.h"
+#include "base/nearest_word.h"
 
 namespace eye {
 namespace {
@@ -30,6 +33,8 @@ std::optional<std::vector<double>> splitNumbers(const std::string& text, char se
   return numbers;
 }
 
+constexpr const char* kNumber = "number";  // the name of validators of numbers
+
 // CLI::Range lets NaN through, since NaN is not less than anything.
 CLI::Validator within(double least, double most) {
   return CLI::Validator(
@@ -39,7 +44,19 @@ CLI::Validator within(double least, double most) {
                    ? std::string()
                    : fmt::format("'{}' is not a number from {} to {}", text, least, most);
       },
-      fmt::format("{}..{}", least, most));
+      fmt::format("{}..{}", least, most), kNumber);
+}
+
+CLI::Validator wholeWithin(uint64_t least, uint64_t most) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        uint64_t number = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        return error == std::errc() && end == text.data() + text.size() && number >= least && number <= most
+                   ? std::string()
+                   : fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+      },
+      fmt::format("{}..{}", least, most), kNumber);
 }
 
 void setSize(Options& options, const std::string& text) {
@@ -76,7 +93,8 @@ void setRate(Options& options, const std::string& text) {
 
 void setBackground(Options& options, const std::string& text) {
   const auto n = splitNumbers(text, ',', 3);
-  if (!n) throw CLI::ValidationError("--background", fmt::format("'{}' is no colour; give R,G,B from 0 to 1", text));
+  if (!n || std::ranges::any_of(*n, [](double part) { return part < 0 || part > 1; }))
+    throw CLI::ValidationError("--background", fmt::format("'{}' is no colour; give R,G,B from 0 to 1", text));
   options.background = glm::vec3(glm::dvec3((*n)[0], (*n)[1], (*n)[2]));
 }
 
@@ -124,7 +142,10 @@ void addView(CLI::App& app, Options& o) {
       ->group(group);
   app.add_flag("--headless", o.headless, "No window; works without a display")->group(group);
   app.add_flag("--fullscreen", o.fullscreen, "The whole monitor (F11 switches)")->group(group);
-  app.add_option("--monitor", o.monitor, "Which monitor, from 0")->type_name("N")->check(within(0, 63))->group(group);
+  app.add_option("--monitor", o.monitor, "Which monitor, from 0")
+      ->type_name("N")
+      ->check(wholeWithin(0, 63))
+      ->group(group);
   app.add_option_function<std::string>(
          "--vsync", [&o](const std::string& t) { o.vsync = onOff("--vsync", t); }, "on (default) or off")
       ->type_name("on/off")
@@ -134,7 +155,10 @@ void addView(CLI::App& app, Options& o) {
 
 void addRun(CLI::App& app, Options& o) {
   const char* group = "Run";
-  app.add_option("--frames", o.frames, "Stop after N frames")->type_name("N")->check(within(1, 1e15))->group(group);
+  app.add_option("--frames", o.frames, "Stop after N frames")
+      ->type_name("N")
+      ->check(wholeWithin(1, 1'000'000'000'000'000))
+      ->group(group);
   app.add_option("--duration", o.durationS, "Stop after S seconds")
       ->type_name("S")
       ->check(within(0.001, 1e9))
@@ -167,13 +191,20 @@ void addQuality(CLI::App& app, Options& o) {
       ->type_name("none/frustum")
       ->check(CLI::IsMember({"none", "frustum"}))
       ->group(group);
+  app.add_option_function<std::string>(
+         "--horizon",
+         [&o](const std::string& t) { o.horizon = t == "paper" ? HorizonTest::paper : HorizonTest::ellipsoid; },
+         "What hides chunks below the horizon: ellipsoid (default), or paper: a sphere, for comparison")
+      ->type_name("ellipsoid/paper")
+      ->check(CLI::IsMember({"ellipsoid", "paper"}))
+      ->group(group);
   app.add_option("--cache-ram", o.cacheRamMiB, "Budget for decoded terrain in memory; default 96")
       ->type_name("MIB")
-      ->check(within(8, 1 << 20))
+      ->check(wholeWithin(8, 1 << 20))
       ->group(group);
   app.add_option("--cache-gpu", o.cacheGpuMiB, "Budget for terrain on the GPU; default 160")
       ->type_name("MIB")
-      ->check(within(16, 1 << 20))
+      ->check(wholeWithin(16, 1 << 20))
       ->group(group);
   app.add_option("--time-of-day", o.timeOfDayH, "Local solar time, hours; default 9")
       ->type_name("H")
@@ -215,6 +246,27 @@ void addDiagnosis(CLI::App& app, Options& o) {
       ->group(group);
 }
 
+bool takesNumber(CLI::Option& option) {
+  try {
+    return option.get_validator(kNumber) != nullptr;
+  } catch (const CLI::OptionNotFound&) {
+    return false;
+  }
+}
+
+// Numbers and flags have types of their own in TOML; everything else is text. `rate` and `vsync` are words that may be
+// a number or a flag.
+Result<void> checkType(CLI::Option& option, const std::string& key, const ConfigWord& word) {
+  const bool isFlag = option.get_items_expected_max() == 0, isNumber = takesNumber(option);
+  if (word.type == (isFlag ? ConfigType::flag : isNumber ? ConfigType::number : ConfigType::text)) return {};
+  if (key == "rate" && word.type == ConfigType::number) return {};
+  if (key == "vsync" && word.type == ConfigType::flag) return {};
+  const std::string given = word.type == ConfigType::text ? '"' + word.text + '"' : word.text;
+  const std::string wanted =
+      isFlag ? "true or false" : (isNumber ? "a number, " : "text in quotes, ") + option.get_type_name();
+  return fail(ErrorKind::usage, fmt::format("{} takes {}; got {}", key, wanted, given));
+}
+
 // What the file says, for each option that the command line left out.
 Result<void> applyConfig(CLI::App& app, const std::string& path) {
   const Result<ConfigValues> values = readConfigFile(path);
@@ -240,7 +292,11 @@ Result<void> applyConfig(CLI::App& app, const std::string& path) {
     try {
       if (words.size() > 1 && option->get_expected_max() <= 1 && key != "host")
         return fail(ErrorKind::usage, fmt::format("{}: {} takes one value", path, key));
-      for (const std::string& word : words) option->add_result(word);
+      for (const ConfigWord& word : words) {
+        if (const Result<void> ok = checkType(*option, key, word); !ok)
+          return fail(ErrorKind::usage, fmt::format("{}: {}", path, ok.error().message));
+        option->add_result(word.text);
+      }
       option->run_callback();
     } catch (const CLI::Error& error) {
       return fail(ErrorKind::usage, fmt::format("{}: {}: {}", path, key, error.what()));
@@ -266,8 +322,9 @@ std::string defaultTerrainPath() {
 }
 
 std::string Options::settingsLine() const {
-  return fmt::format("size={}x{} sse={} culling={} cache-ram={} cache-gpu={} offline={} redraw={}", widthPx, heightPx,
-                     ssePx, culling == CullingScheme::none ? "none" : "frustum", cacheRamMiB, cacheGpuMiB, offline,
+  return fmt::format("size={}x{} sse={} culling={} horizon={} cache-ram={} cache-gpu={} offline={} redraw={}", widthPx,
+                     heightPx, ssePx, culling == CullingScheme::none ? "none" : "frustum",
+                     horizon == HorizonTest::paper ? "paper" : "ellipsoid", cacheRamMiB, cacheGpuMiB, offline,
                      redrawAlways ? "always" : "changed");
 }
 
