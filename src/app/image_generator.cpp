@@ -137,7 +137,7 @@ Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
 
 // Walks the forest and exchanges with the paging thread; offline again and again until nothing more comes.
 void ImageGenerator::select() {
-  const LodOptions lod{.ssePx = options_.ssePx, .culling = options_.culling};
+  const LodOptions lod{.ssePx = options_.ssePx, .culling = options_.culling, .horizon = options_.horizon};
   int arrived = 0;
   do {
     const TraceScope scope("select");

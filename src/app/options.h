@@ -37,6 +37,7 @@ struct Options {
   // Quality and budgets.
   double ssePx = 1;
   CullingScheme culling = CullingScheme::frustum;
+  HorizonTest horizon = HorizonTest::ellipsoid;
   uint64_t cacheRamMiB = 96, cacheGpuMiB = 160;
 
   // Light and air. Local solar time at the eye, hours; unset visibility: the host's, else 60 km.

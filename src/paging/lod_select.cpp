@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "paging/across.h"
-#include "paging/horizon.h"
 #include "paging/skirts.h"
 #include "telemetry/trace.h"
 
@@ -22,6 +21,7 @@ class Walk {
         out_(out),
         horizon_(horizon),
         culls_(options.culling == CullingScheme::frustum),
+        horizonTest_(options.horizon),
         eyeM_(view.eyeEcefM),
         planes_(frustumPlanes(view)),
         pixelsPerRadian_(pixelsPerRadian(view)),
@@ -59,7 +59,7 @@ class Walk {
       ++out_.counts.frustumCulled;
       return;
     }
-    if (culls_ && horizon_.hides(meta)) {
+    if (culls_ && horizon_.hides(meta, horizonTest_)) {
       node.visit = Visit::belowHorizon;
       ++out_.counts.horizonCulled;
       return;
@@ -129,6 +129,7 @@ class Walk {
   Selection& out_;
   const Horizon& horizon_;
   const bool culls_;
+  const HorizonTest horizonTest_;
   const Vec3d eyeM_;
   const FrustumPlanes planes_;
   const double pixelsPerRadian_, ssePx_, texelPx_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geo/view.h"
+#include "paging/horizon.h"
 #include "paging/terrain_cache.h"
 
 namespace eye {
@@ -16,6 +17,7 @@ struct LodOptions {
   double ssePx = 1;                                // tolerated screen-space error of geometry
   double texelPx = 4;                              // greatest size of an imagery texel on screen while finer exists
   CullingScheme culling = CullingScheme::frustum;  // frustum: view planes and horizon
+  HorizonTest horizon = HorizonTest::ellipsoid;
 };
 
 struct DrawnChunk {
@@ -58,8 +60,6 @@ struct Selection {
 // Call after cache.beginFrame(). Nodes that are visited are marked used in the cache, for eviction.
 void selectChunks(TerrainCache& cache, const View& view, const LodOptions& options, Selection& out);
 
-// Whether the ellipsoid hides the point (scaled space: ecef over the semi-axes). Cesium's test: exact for ellipsoids.
-bool belowHorizon(const Vec3d& eyeScaled, const Vec3d& pointScaled);
 double distanceToBox(const Vec3d& pointEcefM, const OrientedBox& box);
 
 }  // namespace eye
