@@ -53,6 +53,16 @@ TEST_CASE("under the ellipsoid nothing is hidden") {
   CHECK(Horizon(eyeM, 450).hides(far.meta));
 }
 
+TEST_CASE("an eye under the ellipsoid has a horizon when it is above what is drawn") {
+  const ForestChunk far = makeForestChunk(TileKey::containing(-31, -145, 4), false, true);
+  for (const double altM : {-1.0, -400.0, -430.0}) {
+    const Horizon horizon = horizonForTolerance(ecefFromGeodetic({31.5, 35.4, altM}), 80e3, 1e-3);
+    CHECK(horizon.depthM() > -altM);
+    CHECK(horizon.hides(far.meta));
+    CHECK(horizon.hides(far.meta, HorizonTest::paper));
+  }
+}
+
 TEST_CASE("what the horizon hides is behind the lowered ellipsoid, with all that descends from it") {
   int hidden = 0;
   for (uint32_t seed = 0; seed < 600; ++seed) {

@@ -23,10 +23,11 @@ TerrainCache makeRandomForest(uint32_t seed, const View& view) {
   });
 }
 
-Selection select(TerrainCache& cache, const View& view, CullingScheme culling, double ssePx = 20) {
+Selection select(TerrainCache& cache, const View& view, CullingScheme culling, double ssePx = 20,
+                 HorizonTest horizon = HorizonTest::ellipsoid) {
   Selection selection;
   cache.beginFrame();
-  selectChunks(cache, view, {.ssePx = ssePx, .culling = culling}, selection);
+  selectChunks(cache, view, {.ssePx = ssePx, .culling = culling, .horizon = horizon}, selection);
   return selection;
 }
 
@@ -141,12 +142,13 @@ TEST_CASE("draws are front to back; what is wanted is in groups, most urgent fir
 }
 
 TEST_CASE("culling leaves out only what cannot be seen") {
+  const HorizonTest horizon = GENERATE(HorizonTest::ellipsoid, HorizonTest::paper);
   size_t outside = 0, below = 0;
   for (uint32_t seed = 0; seed < 120; ++seed) {
     const View view = randomView(seed);
     TerrainCache cache = makeRandomForest(seed, view);
     const Selection all = select(cache, view, CullingScheme::none);
-    const Selection some = select(cache, view, CullingScheme::frustum);
+    const Selection some = select(cache, view, CullingScheme::frustum, 20, horizon);
     const auto drawn = byKey(cache, some), full = byKey(cache, all);
     for (const auto& [key, draw] : drawn) REQUIRE(full.contains(key));
     for (const auto& [key, draw] : full) {
