@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "bake/tile_painter.h"
 
@@ -41,12 +42,29 @@ bool meets(const TileBounds& a, const TileBounds& b) {
   return a.southDeg < b.northDeg && b.southDeg < a.northDeg && a.westDeg < b.eastDeg && b.westDeg < a.eastDeg;
 }
 
-// By the same ground distance to all sides; not across the date line.
-TileBounds grown(const TileBounds& b, double byDeg) {
+// By the same ground distance to all sides; in two parts across the date line, and all round beyond a pole.
+std::vector<TileBounds> grown(const TileBounds& b, double byDeg) {
   const double highestLatDeg = std::min(89.0, std::max(std::abs(b.southDeg), std::abs(b.northDeg)));
   const double byLonDeg = byDeg / std::cos(radFromDeg(highestLatDeg));
-  return {std::max(-90.0, b.southDeg - byDeg), std::min(90.0, b.northDeg + byDeg),
-          std::max(-180.0, b.westDeg - byLonDeg), std::min(180.0, b.eastDeg + byLonDeg)};
+  const double south = b.southDeg - byDeg, north = b.northDeg + byDeg;
+  const double west = b.westDeg - byLonDeg, east = b.eastDeg + byLonDeg;
+  const auto between = [&](double westDeg, double eastDeg) {
+    return TileBounds{std::max(-90.0, south), std::min(90.0, north), westDeg, eastDeg};
+  };
+  if (south < -90 || north > 90 || east - west >= 360) return {between(-180, 180)};
+  if (west < -180) return {between(-180, east), between(west + 360, 180)};
+  if (east > 180) return {between(west, 180), between(-180, east - 360)};
+  return {between(west, east)};
+}
+
+// Post spacing of the finest source that meets any of the regions, degrees; 0 where none does.
+double finestSpacingOfAny(const ElevationSurface& surface, const std::vector<TileBounds>& regions) {
+  double finestDeg = 0;
+  for (const TileBounds& region : regions) {
+    const double spacingDeg = surface.finestSpacingDeg(region);
+    if (spacingDeg > 0 && (finestDeg == 0 || spacingDeg < finestDeg)) finestDeg = spacingDeg;
+  }
+  return finestDeg;
 }
 
 // Size of the finest detail that pictures in the region can show, degrees; 0 where there is none to show.
@@ -84,10 +102,10 @@ bool BakePlan::hasImagery(const TileKey& key) const {
 bool BakePlan::wantsChildren(const TileKey& key, double geometricErrorM) const {
   if (key.level() >= maxLevel) return false;
   const double besideDeg = key.level() < meshLevel - kNoFinerBesideData ? cellHeightDeg(key.level()) : 0;
-  const TileBounds near = grown(key.bounds(), besideDeg);
-  if (region && !meets(*region, near)) return false;
+  const std::vector<TileBounds> near = grown(key.bounds(), besideDeg);
+  if (region && std::ranges::none_of(near, [&](const TileBounds& part) { return meets(*region, part); })) return false;
   if (wantsFinerImagery(key) && (!region || meets(*region, key.bounds()))) return true;
-  const double spacingDeg = surface->finestSpacingDeg(near);
+  const double spacingDeg = finestSpacingOfAny(*surface, near);
   return spacingDeg > 0 && key.level() < meshLevel && cellHeightDeg(key.level()) > kLeafPosts * spacingDeg &&
          geometricErrorM > finestErrorM;
 }
