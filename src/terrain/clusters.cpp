@@ -11,8 +11,9 @@ namespace {
 
 // Boxes grow by this on each side, metres: a thousand times what doubles of the Earth's size are off.
 constexpr double kOutwardM = 1e-6;
-// Added to a cone's cutoff, so that the test may be made in single precision: a hundred roundings of a float.
-constexpr double kCutoffSlack = 1e-5;
+// Added to a cone's cutoff, radians: what is nearer to edge-on than this is drawn. Rounding to 1/256 of a pixel may turn
+// such a triangle to the eye where it is not much larger than a pixel. Far more than what single precision is off.
+constexpr double kCutoffSlack = 0.01;
 constexpr int kAxisSteps = 32;
 
 // Twice the triangle's area along its normal, in lattice steps: exact, as lattice differences have 17 bits.
@@ -171,7 +172,7 @@ void split(const std::vector<TriangleShape>& triangles, size_t begin, size_t end
 }
 
 // Triangles of a cluster at most, see docs/CULLING.md.
-constexpr uint32_t kMostTriangles = 128;
+constexpr uint32_t kMostTriangles = 64;
 
 }  // namespace
 

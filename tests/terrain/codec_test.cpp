@@ -58,6 +58,14 @@ const TileKey kSouthPole = TileKey::fromGrid(5, 6, 31, 0);
 void requireDrawable(ChunkMesh mesh) {
   for (const uint16_t index : mesh.indices) REQUIRE(index < mesh.vertices.size());
   REQUIRE(mesh.indices.size() % 3 == 0);
+  size_t covered = 0;
+  for (const ChunkCluster& cluster : mesh.clusters) {
+    REQUIRE(cluster.firstIndex == covered);
+    REQUIRE((cluster.indexCount > 0 && cluster.indexCount % 3 == 0));
+    for (size_t axis = 0; axis < 3; ++axis) REQUIRE(cluster.boxMin[axis] <= cluster.boxMax[axis]);
+    covered += cluster.indexCount;
+  }
+  REQUIRE(covered == mesh.indices.size());
   appendSkirts(mesh);  // aborts where the loop or the number of vertices is too large
   for (const uint16_t index : mesh.indices) REQUIRE(index < mesh.vertices.size());
 }
@@ -103,6 +111,30 @@ TEST_CASE("A mesh that no renderer could draw is refused") {
   bad = mesh;
   bad.indices.clear();
   refused(bad, "0 indices");
+  bad = mesh;
+  bad.clusters.clear();
+  refused(bad, "0 clusters");
+  bad = mesh;
+  bad.clusters.resize(mesh.indices.size() / 3 + 1, mesh.clusters[0]);
+  refused(bad, "clusters of");
+  bad = mesh;
+  bad.clusters[0].indexCount -= 3;
+  refused(bad, "not its triangles'");
+  bad = mesh;
+  bad.clusters[0].indexCount += 3;
+  refused(bad, "not its triangles'");
+  bad = mesh;
+  bad.clusters.push_back({});  // of no triangles
+  refused(bad, "not its triangles'");
+  bad = mesh;
+  std::swap(bad.clusters[0].boxMin[1], bad.clusters[0].boxMax[1]);
+  refused(bad, "inside out");
+  bad = mesh;
+  bad.clusters[0].coneCutoff = -1;
+  refused(bad, "cone");
+  bad = mesh;
+  bad.clusters[0].coneAxis = {100, 100, 100};
+  refused(bad, "cone");
   CHECK_FALSE(decodeMesh(encodeMesh(mesh), kNorthPole));  // of another kind of tile
   CHECK_FALSE(decodeMesh({}, kOrdinary));
 
@@ -187,6 +219,50 @@ TEST_CASE("No mutation of a blob harms its decoder") {
     const auto chain = decodeImagery(mutated(pictures[random() % 2], random), 32);
     if (chain) REQUIRE(chain->size() == mipChainBytes(32));
   }
+}
+
+TEST_CASE("Whatever a cluster table says, its runs are those of the triangles or it is refused") {
+  std::mt19937 random(20260101);
+  const ChunkMesh mesh = syntheticMesh(kOrdinary, 10).mesh;  // four clusters
+  REQUIRE(mesh.clusters.size() == 4);
+  int accepted = 0;
+  constexpr int kRounds = 4000;
+  for (int i = 0; i < kRounds; ++i) {
+    ChunkMesh bad = mesh;
+    for (auto changes = 1 + random() % 3; changes > 0 && !bad.clusters.empty(); --changes) {
+      ChunkCluster& cluster = bad.clusters[random() % bad.clusters.size()];
+      const auto any16 = static_cast<uint16_t>(random());
+      const auto any8 = static_cast<int8_t>(random());
+      switch (random() % 7) {
+        case 0:
+          cluster.indexCount = 3 * uint32_t{any16};
+          break;
+        case 1:
+          cluster.indexCount = 3 * static_cast<uint32_t>(random() % 100);
+          break;
+        case 2:
+          cluster.boxMin[random() % 3] = any16;
+          break;
+        case 3:
+          cluster.boxMax[random() % 3] = any16;
+          break;
+        case 4:
+          cluster.coneAxis[random() % 3] = any8;
+          break;
+        case 5:
+          cluster.coneCutoff = any8;
+          break;
+        default:
+          bad.clusters.resize(random() % 400, cluster);
+      }
+    }
+    const Result<ChunkMesh> decoded = decodeMesh(encodeMesh(bad), kOrdinary);
+    if (!decoded) continue;
+    ++accepted;
+    requireDrawable(*decoded);
+  }
+  CHECK(accepted > kRounds / 20);  // a box or cone that is another is still one
+  CHECK(accepted < kRounds / 2);
 }
 
 TEST_CASE("Decoding keeps the paging thread's pace") {
