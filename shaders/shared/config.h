@@ -10,6 +10,39 @@
 #define EYE_BIND_FRAME 0
 #define EYE_BIND_TEXTURES 1
 
+// Bindings of the culling passes' descriptor set.
+#define EYE_BIND_CULL_PARAMS 0
+#define EYE_BIND_CULL_CHUNKS 1
+#define EYE_BIND_CULL_CANDIDATES 2
+#define EYE_BIND_CLUSTERS 3
+#define EYE_BIND_VISIBLE 4
+#define EYE_BIND_EARLY 5
+#define EYE_BIND_LATE 6
+#define EYE_BIND_FATES 7
+#define EYE_BIND_DEPTH 8
+#define EYE_BIND_PYRAMID 9
+#define EYE_CULL_BINDINGS 10
+
+// What became of a cluster, in the low bits of its fate; above them its count of triangles.
+#define EYE_FATE_VISIBLE 0u
+#define EYE_FATE_OUTSIDE 1u
+#define EYE_FATE_BACK_FACING 2u
+#define EYE_FATE_OCCLUDED 3u
+#define EYE_FATE_DRAWN 4u  // a flag: may be set with occluded, for one that last frame's visibility had drawn
+#define EYE_FATE_BITS 3
+
+// A group of the culling shader works on so many clusters, one of the depth map's on so many texels each way.
+#define EYE_CULL_GROUP 64
+#define EYE_DEPTH_GROUP 8
+// 2^13 texels: the largest depth map.
+#define EYE_MAX_DEPTH_LEVELS 14
+
+// Added to a cone's cutoff, a sine: see isBackFacing.
+#define EYE_CONE_MARGIN 0.02f
+// Margins of the depth that a box may reach: a share of its extent along the view, and of the depth; see mapRectOf.
+#define EYE_DEPTH_MARGIN 0.0625f
+#define EYE_DEPTH_FACTOR 1.00001f
+
 // Locations of the vertex attributes: of a vertex, and of the chunk that it belongs to (see DrawData).
 #define EYE_AT_POSITION_SKIRT 0
 #define EYE_AT_PARAM 1

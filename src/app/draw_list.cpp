@@ -19,6 +19,7 @@ void makeDrawList(const TerrainCache& cache, const Selection& selection, std::ve
     draw.skirtDepthM = static_cast<float>(drawn.skirtDepthM);
     draw.originLattice = node.meta.originLattice;
     draw.stepM = node.meta.stepM();
+    draw.box = node.meta.box;
     draw.upEcef = glm::cross(east, north);
     draw.outwardEcef = {-north, east, north, -east};
     draw.textureLayer = static_cast<uint32_t>(texture.gpu.textureLayer);

@@ -24,6 +24,8 @@ struct FrameRecord {
   std::vector<PassTime> passes;
   uint64_t triangles = 0, vertices = 0, draws = 0;
   SelectionCounts selection;
+  CullCounts clusters;                   // of the occlusion pass, where it ran
+  std::optional<glm::ivec2> depthMapPx;  // its depth map; nothing: it did not run
   PagingCounts paging;
   HostCounts host;
   double hostAgeMs = -1;  // from the newest packet's arrival to the frame's completion; negative: no packet yet

@@ -137,7 +137,10 @@ Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
 
 // Walks the forest and exchanges with the paging thread; offline again and again until nothing more comes.
 void ImageGenerator::select() {
-  const LodOptions lod{.ssePx = options_.ssePx, .culling = options_.culling, .horizon = options_.horizon};
+  const bool culls = options_.culling != CullingMode::none;
+  const LodOptions lod{.ssePx = options_.ssePx,
+                       .culling = culls ? CullingScheme::frustum : CullingScheme::none,
+                       .horizon = options_.horizon};
   int arrived = 0;
   do {
     const TraceScope scope("select");
@@ -174,11 +177,15 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
                     readDepth > drawn_->readDepth;
   FrameRecord record;
   if (draw) {
+    std::optional<glm::ivec2> depthMapPx;
+    if (options_.culling == CullingMode::dynamic && options_.depthMap == DepthMapMode::fixed)
+      depthMapPx = options_.depthMapPx;
     makeDrawList(pager_->cache(), selection_, draws_);
     FrameInput input{.view = view_,
                      .draws = draws_,
                      .lighting = lighting,
                      .background = options_.background,
+                     .depthMapPx = depthMapPx,
                      .readColour = readColour,
                      .readDepth = readDepth,
                      .overlay = {}};
@@ -186,6 +193,8 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
     const Result<FrameOutput> output = renderer_->drawFrame(input);
     if (!output) return tl::unexpected(output.error());
     output_ = *output;
+    record.clusters = output_.clusters;
+    record.depthMapPx = depthMapPx;
     const PagingCounts paging = pager_->counts();
     drawn_ = Drawn{view_, lighting, {}, paging.loaded, paging.evicted, readColour, readDepth};
     for (const DrawnChunk& drawn : selection_.draws) drawn_->nodes.push_back(drawn.node);

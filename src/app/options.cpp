@@ -59,14 +59,44 @@ CLI::Validator wholeWithin(uint64_t least, uint64_t most) {
       fmt::format("{}..{}", least, most), kNumber);
 }
 
-void setSize(Options& options, const std::string& text) {
+// WxH, both whole and from `least` to kLargestSidePx.
+std::optional<glm::ivec2> sizeOf(const std::string& text, int least) {
   const auto numbers = splitNumbers(text, 'x', 2);
-  if (!numbers || std::floor((*numbers)[0]) != (*numbers)[0] || std::floor((*numbers)[1]) != (*numbers)[1] ||
-      std::min((*numbers)[0], (*numbers)[1]) < 16 || std::max((*numbers)[0], (*numbers)[1]) > kLargestSidePx)
+  if (!numbers) return std::nullopt;
+  for (const double side : *numbers)
+    if (std::floor(side) != side || side < least || side > kLargestSidePx) return std::nullopt;
+  return glm::ivec2(static_cast<int>((*numbers)[0]), static_cast<int>((*numbers)[1]));
+}
+
+void setSize(Options& options, const std::string& text) {
+  const auto size = sizeOf(text, 16);
+  if (!size)
     throw CLI::ValidationError("--size", fmt::format("'{}' is no size; give WxH from 16x16 to {}x{}, such as 1280x720",
                                                      text, kLargestSidePx, kLargestSidePx));
-  options.widthPx = static_cast<int>((*numbers)[0]);
-  options.heightPx = static_cast<int>((*numbers)[1]);
+  options.widthPx = size->x;
+  options.heightPx = size->y;
+}
+
+CullingMode cullingOf(const std::string& text) {
+  return text == "none" ? CullingMode::none : text == "frustum" ? CullingMode::frustum : CullingMode::dynamic;
+}
+
+std::string nameOf(CullingMode culling) {
+  return culling == CullingMode::none ? "none" : culling == CullingMode::frustum ? "frustum" : "dynamic";
+}
+
+void setDepthMap(Options& options, const std::string& text) {
+  if (text == "auto" || text == "off") {
+    options.depthMap = text == "auto" ? DepthMapMode::automatic : DepthMapMode::off;
+    return;
+  }
+  const auto size = sizeOf(text, 1);
+  if (!size)
+    throw CLI::ValidationError(
+        "--depth-map", fmt::format("'{}' is no depth map; give auto, off or WxH from 1x1 to {}x{}, such as 400x300",
+                                   text, kLargestSidePx, kLargestSidePx));
+  options.depthMap = DepthMapMode::fixed;
+  options.depthMapPx = *size;
 }
 
 void setFrustum(Options& options, const std::string& text) {
@@ -185,11 +215,16 @@ void addQuality(CLI::App& app, Options& o) {
       ->check(within(0.05, 64.0))
       ->group(group);
   app.add_option_function<std::string>(
-         "--culling",
-         [&o](const std::string& t) { o.culling = t == "none" ? CullingScheme::none : CullingScheme::frustum; },
-         "none, or frustum (default): view frustum and horizon")
-      ->type_name("none/frustum")
-      ->check(CLI::IsMember({"none", "frustum"}))
+         "--culling", [&o](const std::string& t) { o.culling = cullingOf(t); },
+         "none, frustum (view frustum and horizon), or dynamic (default): hidden and\n"
+         "back-facing clusters too, where that pays; the picture is the same")
+      ->type_name("none/frustum/dynamic")
+      ->check(CLI::IsMember({"none", "frustum", "dynamic"}))
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--depth-map", [&o](const std::string& t) { setDepthMap(o, t); },
+         "Size of dynamic culling's depth map: auto (default) chooses each frame, off, or WxH")
+      ->type_name("auto/off/WxH")
       ->group(group);
   app.add_option_function<std::string>(
          "--horizon",
@@ -323,9 +358,8 @@ std::string defaultTerrainPath() {
 
 std::string Options::settingsLine() const {
   return fmt::format("size={}x{} sse={} culling={} horizon={} cache-ram={} cache-gpu={} offline={} redraw={}", widthPx,
-                     heightPx, ssePx, culling == CullingScheme::none ? "none" : "frustum",
-                     horizon == HorizonTest::paper ? "paper" : "ellipsoid", cacheRamMiB, cacheGpuMiB, offline,
-                     redrawAlways ? "always" : "changed");
+                     heightPx, ssePx, nameOf(culling), horizon == HorizonTest::paper ? "paper" : "ellipsoid",
+                     cacheRamMiB, cacheGpuMiB, offline, redrawAlways ? "always" : "changed");
 }
 
 ParsedOptions parseOptions(int argc, const char* const* argv) {

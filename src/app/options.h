@@ -12,6 +12,9 @@
 
 namespace eye {
 
+enum class CullingMode { none, frustum, dynamic };
+enum class DepthMapMode { automatic, off, fixed };
+
 struct Options {
   // Terrain and where the state comes from.
   std::string terrain;  // empty: the embedded demo
@@ -36,7 +39,9 @@ struct Options {
 
   // Quality and budgets.
   double ssePx = 1;
-  CullingScheme culling = CullingScheme::frustum;
+  CullingMode culling = CullingMode::dynamic;
+  DepthMapMode depthMap = DepthMapMode::automatic;  // read with dynamic culling alone
+  glm::ivec2 depthMapPx{0, 0};                      // with DepthMapMode::fixed
   HorizonTest horizon = HorizonTest::ellipsoid;
   uint64_t cacheRamMiB = 96, cacheGpuMiB = 160;
 

@@ -27,8 +27,12 @@ Json jsonOf(const FrameRecord& r) {
                  {"backface_culled", 0},
                  {"occlusion_culled", 0},
                  {"drawn", s.drawn}};
-  // A chunk is drawn as a whole: its clusters are itself.
-  Json clusters = chunks;
+  Json clusters = {{"considered", r.clusters.considered},
+                   {"frustum_culled", r.clusters.outside},
+                   {"horizon_culled", 0},  // by chunks
+                   {"backface_culled", r.clusters.backFacing},
+                   {"occlusion_culled", r.clusters.occluded},
+                   {"drawn", r.clusters.drawn}};
   return Json{{"frame", r.frame},
               {"time_s", r.timeS},
               {"pose",
@@ -44,7 +48,7 @@ Json jsonOf(const FrameRecord& r) {
               {"draws", r.draws},
               {"chunks", chunks},
               {"clusters", clusters},
-              {"depth_map", "off"},
+              {"depth_map", r.depthMapPx ? fmt::format("{}x{}", r.depthMapPx->x, r.depthMapPx->y) : "off"},
               {"membership", {{"altitude", nullptr}, {"pitch", nullptr}, {"sum", nullptr}}},
               {"paging",
                {{"requested", r.paging.requested},

@@ -28,7 +28,10 @@ Features wantedFeatures() {
   Features features;
   features.get<vk::PhysicalDeviceFeatures2>().features.setMultiDrawIndirect(true).setDrawIndirectFirstInstance(true);
   features.get<vk::PhysicalDeviceVulkan12Features>().setScalarBlockLayout(true);
-  features.get<vk::PhysicalDeviceVulkan13Features>().setSynchronization2(true).setDynamicRendering(true);
+  features.get<vk::PhysicalDeviceVulkan13Features>()
+      .setSynchronization2(true)
+      .setDynamicRendering(true)
+      .setMaintenance4(true);
   return features;
 }
 
@@ -128,6 +131,7 @@ std::string whatLacks(const vk::raii::Instance& instance, const vk::raii::Physic
   need(has.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout, "scalarBlockLayout");
   need(has.get<vk::PhysicalDeviceVulkan13Features>().synchronization2, "synchronization2");
   need(has.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering, "dynamicRendering");
+  need(has.get<vk::PhysicalDeviceVulkan13Features>().maintenance4, "maintenance4");
   const auto depth = device.getFormatProperties(vk::Format::eD32Sfloat).optimalTilingFeatures;
   need(bool(depth & vk::FormatFeatureFlagBits::eDepthStencilAttachment), "a 32-bit float depth format");
   need(findQueueFamily(instance, device, present).has_value(),

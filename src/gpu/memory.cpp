@@ -1,5 +1,7 @@
 #include "gpu/memory.h"
 
+#include <cstring>
+
 namespace eye {
 namespace {
 
@@ -60,6 +62,25 @@ GpuImage createImage(const GpuDevice& gpu, const ImageSpec& spec) {
   const auto type = spec.array ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D;
   made.view = vk::raii::ImageView(gpu.device, vk::ImageViewCreateInfo({}, *made.image, type, spec.format, {}, all));
   return made;
+}
+
+void readBytes(const GpuDevice& gpu, const GpuBuffer& buffer, std::span<std::byte> to) {
+  if (to.empty()) return;
+  EYE_CHECK(to.size() <= buffer.size);
+  if (buffer.mapped != nullptr) {
+    std::memcpy(to.data(), buffer.mapped, to.size());
+    return;
+  }
+  const GpuBuffer staging = createBuffer(gpu, to.size(), vk::BufferUsageFlagBits::eTransferDst, MemoryUse::readBack);
+  runOnce(gpu, [&](const vk::raii::CommandBuffer& commands) {
+    commands.copyBuffer(*buffer.buffer, *staging.buffer, vk::BufferCopy(0, 0, to.size()));
+    const vk::MemoryBarrier2 toHost(vk::PipelineStageFlagBits2::eTransfer, vk::AccessFlagBits2::eTransferWrite,
+                                    vk::PipelineStageFlagBits2::eHost, vk::AccessFlagBits2::eHostRead);
+    vk::DependencyInfo info;
+    info.setMemoryBarriers(toHost);
+    commands.pipelineBarrier2(info);
+  });
+  std::memcpy(to.data(), staging.mapped, to.size());
 }
 
 }  // namespace eye

@@ -28,6 +28,15 @@ struct GpuBuffer {
 
 GpuBuffer createBuffer(const GpuDevice& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage, MemoryUse use);
 
+// Copies the first elements to the CPU and waits: for tests and debugging. `buffer` is a transfer source or mapped.
+void readBytes(const GpuDevice& gpu, const GpuBuffer& buffer, std::span<std::byte> to);
+template <class T>
+std::vector<T> readBuffer(const GpuDevice& gpu, const GpuBuffer& buffer, size_t count) {
+  std::vector<T> values(count);
+  readBytes(gpu, buffer, std::as_writable_bytes(std::span<T>(values)));
+  return values;
+}
+
 struct ImageSpec {
   int widthPx = 0, heightPx = 0;
   vk::Format format = vk::Format::eUndefined;

@@ -48,4 +48,11 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
   return {gpu.device, cache, info};
 }
 
+vk::raii::Pipeline createComputePipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
+                                         std::span<const uint32_t> spirv, vk::PipelineLayout layout) {
+  const vk::raii::ShaderModule module = createModule(gpu, spirv);
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
+  return {gpu.device, cache, vk::ComputePipelineCreateInfo({}, stage, layout)};
+}
+
 }  // namespace eye

@@ -1,4 +1,5 @@
-// Graphics pipelines for dynamic rendering: one description, one call. Viewport and scissor are dynamic.
+// Pipelines: one description, one call. Graphics pipelines are for dynamic rendering; viewport and scissor are
+// dynamic.
 #pragma once
 
 #include <span>
@@ -26,5 +27,7 @@ struct PipelineSpec {
 };
 
 vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const PipelineSpec& spec);
+vk::raii::Pipeline createComputePipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
+                                         std::span<const uint32_t> spirv, vk::PipelineLayout layout);
 
 }  // namespace eye

@@ -31,6 +31,7 @@ struct LoadedChunk {
 struct GpuChunk {
   uint32_t vertexOffset = 0, firstIndex = 0;  // into the renderer's pools
   uint32_t vertexCount = 0, indexCount = 0;
+  uint32_t clusterOffset = 0, clusterCount = 0;
   int32_t textureLayer = -1;  // -1: none of its own
 };
 class GpuStore {

@@ -16,6 +16,9 @@ namespace {
 constexpr double kTextureShare = 0.7;
 // A mesh has about twice as many triangles as vertices: 12 bytes of indices for each vertex of 16.
 constexpr uint64_t kVertexParts = 4, kIndexParts = 3;
+// A cluster has some 100 triangles, the smallest chunks fewer: one cluster for so many vertices is more than enough.
+constexpr uint64_t kVerticesPerCluster = 24;
+constexpr uint64_t kClusterBytes = sizeof(shader::ClusterRecord) + sizeof(uint32_t);  // with its visibility
 // Less than this cannot hold the eight roots and one level below.
 constexpr uint32_t kLeastLayers = 40, kLeastVertices = 40 * 1024;
 // Uploads of some frames at the pager's usual 4 MiB.
@@ -37,6 +40,20 @@ GpuImage createTextures(const GpuDevice& gpu, int textureSize, uint32_t layers) 
   return createImage(gpu, spec);
 }
 
+shader::ClusterRecord recordOf(const ChunkCluster& cluster, uint32_t chunkFirstIndex) {
+  const auto pair = [](uint16_t low, uint16_t high) { return uint32_t{low} | uint32_t{high} << 16; };
+  const auto byte = [](int8_t value, int place) { return uint32_t{static_cast<uint8_t>(value)} << (8 * place); };
+  const auto& low = cluster.boxMin;
+  const auto& high = cluster.boxMax;
+  return {.firstIndex = chunkFirstIndex + cluster.firstIndex,
+          .indexCount = cluster.indexCount,
+          .boxMinXY = pair(low[0], low[1]),
+          .boxMinZMaxX = pair(low[2], high[0]),
+          .boxMaxYZ = pair(high[1], high[2]),
+          .cone = byte(cluster.coneAxis[0], 0) | byte(cluster.coneAxis[1], 1) | byte(cluster.coneAxis[2], 2) |
+                  byte(cluster.coneCutoff, 3)};
+}
+
 }  // namespace
 
 std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uint32_t maxLayers) {
@@ -44,11 +61,15 @@ std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uin
   const auto textureBytes = static_cast<uint64_t>(static_cast<double>(budgetBytes) * kTextureShare);
   plan.layers = static_cast<uint32_t>(std::min<uint64_t>(textureBytes / layerBytes, maxLayers));
   const uint64_t meshBytes = budgetBytes - std::min(budgetBytes, plan.layers * layerBytes);
-  const uint64_t parts = kVertexParts + kIndexParts;
+  const uint64_t meshParts = kVertexParts + kIndexParts;
+  // So many vertices and the cluster that is counted for them.
+  constexpr uint64_t kBatchBytes = kVerticesPerCluster * sizeof(ChunkVertex) + kClusterBytes;
   // 2^31 indices of 2 bytes and 2^31 vertices are beyond any budget; the bound keeps 32-bit offsets safe.
   constexpr uint64_t kMost = uint64_t{1} << 31;
-  plan.vertices = static_cast<uint32_t>(std::min(kMost, meshBytes * kVertexParts / parts / sizeof(ChunkVertex)));
-  plan.indices = static_cast<uint32_t>(std::min(kMost, meshBytes * kIndexParts / parts / sizeof(uint16_t)));
+  plan.clusters =
+      static_cast<uint32_t>(std::min(kMost / kVerticesPerCluster, meshBytes * kVertexParts / meshParts / kBatchBytes));
+  plan.vertices = static_cast<uint32_t>(plan.clusters * kVerticesPerCluster);
+  plan.indices = static_cast<uint32_t>(std::min(kMost, meshBytes * kIndexParts / meshParts / sizeof(uint16_t)));
   if (plan.layers < kLeastLayers || plan.vertices < kLeastVertices) return std::nullopt;
   return plan;
 }
@@ -61,7 +82,8 @@ Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uin
     const auto plan = planPools(budgetBytes, layerBytes, maxLayers);
     if (!plan) break;
     GpuImage textures = createTextures(gpu, textureSize, plan->layers);
-    const uint64_t meshBytes = plan->vertices * sizeof(ChunkVertex) + plan->indices * sizeof(uint16_t);
+    const uint64_t meshBytes =
+        plan->vertices * sizeof(ChunkVertex) + plan->indices * sizeof(uint16_t) + plan->clusters * kClusterBytes;
     if (textures.bytes + meshBytes <= budgetBytes) {
       return std::unique_ptr<ChunkPools>(new ChunkPools(gpu, *plan, std::move(textures), textureSize));
     }
@@ -80,6 +102,7 @@ ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage text
       chainBytes_(mipChainBytes(textureSize)),
       vertices_(plan.vertices),
       indices_(plan.indices),
+      clusters_(plan.clusters),
       layers_(plan.layers),
       textures_(std::move(textures)) {
   using Use = vk::BufferUsageFlagBits;
@@ -87,6 +110,10 @@ ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage text
       createBuffer(gpu, plan.vertices * sizeof(ChunkVertex), Use::eVertexBuffer | Use::eTransferDst, MemoryUse::device);
   indexBuffer_ =
       createBuffer(gpu, plan.indices * sizeof(uint16_t), Use::eIndexBuffer | Use::eTransferDst, MemoryUse::device);
+  clusterBuffer_ = createBuffer(gpu, plan.clusters * sizeof(shader::ClusterRecord),
+                                Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc, MemoryUse::device);
+  visibleBuffer_ =
+      createBuffer(gpu, plan.clusters * sizeof(uint32_t), Use::eStorageBuffer | Use::eTransferDst, MemoryUse::device);
   const uint64_t stagingBytes = std::max(kStagingBytes, 2 * chainBytes_ + (uint64_t{4} << 20));
   staging_ = createBuffer(gpu, stagingBytes, Use::eTransferSrc, MemoryUse::upload);
   runOnce(gpu, [this](const vk::raii::CommandBuffer& commands) {
@@ -99,30 +126,42 @@ ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage text
 std::optional<GpuChunk> ChunkPools::upload(const LoadedChunk& chunk) {
   const auto vertexCount = static_cast<uint32_t>(chunk.mesh.vertices.size());
   const auto indexCount = static_cast<uint32_t>(chunk.mesh.indices.size());
-  EYE_CHECK(vertexCount > 0 && indexCount > 0 && (chunk.texels.empty() || chunk.texels.size() == chainBytes_));
+  const auto clusterCount = static_cast<uint32_t>(chunk.mesh.clusters.size());
+  EYE_CHECK(vertexCount > 0 && indexCount > 0 && clusterCount > 0 &&
+            (chunk.texels.empty() || chunk.texels.size() == chainBytes_));
   const size_t vertexBytes = vertexCount * sizeof(ChunkVertex), indexBytes = indexCount * sizeof(uint16_t);
-  const uint64_t bytes = roundUp(vertexBytes, 16) + roundUp(indexBytes, 16) + roundUp(chunk.texels.size(), 16);
+  const size_t clusterBytes = clusterCount * sizeof(shader::ClusterRecord);
+  const uint64_t bytes =
+      roundUp(vertexBytes, 16) + roundUp(indexBytes, 16) + roundUp(clusterBytes, 16) + roundUp(chunk.texels.size(), 16);
   if (bytes > staging_.size) return std::nullopt;
   if (stagedBytes_ + bytes > staging_.size) flush();
 
   GpuChunk made;
   made.vertexCount = vertexCount;
   made.indexCount = indexCount;
+  made.clusterCount = clusterCount;
   const auto vertexOffset = vertices_.allocate(vertexCount);
   const auto firstIndex = indices_.allocate(indexCount);
+  const auto clusterOffset = clusters_.allocate(clusterCount);
   std::optional<uint32_t> layer;
   if (!chunk.texels.empty()) layer = layers_.allocate(1);
-  if (!vertexOffset || !firstIndex || (!chunk.texels.empty() && !layer)) {
+  if (!vertexOffset || !firstIndex || !clusterOffset || (!chunk.texels.empty() && !layer)) {
     if (vertexOffset) vertices_.release(*vertexOffset, vertexCount);
     if (firstIndex) indices_.release(*firstIndex, indexCount);
+    if (clusterOffset) clusters_.release(*clusterOffset, clusterCount);
     if (layer) layers_.release(*layer, 1);
     return std::nullopt;
   }
   made.vertexOffset = *vertexOffset;
   made.firstIndex = *firstIndex;
+  made.clusterOffset = *clusterOffset;
   vertexCopies_.push_back(
       {stage(chunk.mesh.vertices.data(), vertexBytes), *vertexOffset * sizeof(ChunkVertex), vertexBytes});
   indexCopies_.push_back({stage(chunk.mesh.indices.data(), indexBytes), *firstIndex * sizeof(uint16_t), indexBytes});
+  records_.clear();
+  for (const ChunkCluster& cluster : chunk.mesh.clusters) records_.push_back(recordOf(cluster, *firstIndex));
+  clusterCopies_.push_back(
+      {stage(records_.data(), clusterBytes), *clusterOffset * sizeof(shader::ClusterRecord), clusterBytes});
   if (!layer.has_value()) return made;
 
   made.textureLayer = static_cast<int32_t>(*layer);
@@ -140,12 +179,14 @@ void ChunkPools::release(const GpuChunk& chunk) {
   if (isPending(chunk)) flush();
   vertices_.release(chunk.vertexOffset, chunk.vertexCount);
   indices_.release(chunk.firstIndex, chunk.indexCount);
+  clusters_.release(chunk.clusterOffset, chunk.clusterCount);
   if (chunk.textureLayer >= 0) layers_.release(static_cast<uint32_t>(chunk.textureLayer), 1);
 }
 
 uint64_t ChunkPools::bytesResident() const {
   const uint64_t layerBytes = textures_.bytes / layers_.capacity();
-  return vertices_.used() * sizeof(ChunkVertex) + indices_.used() * sizeof(uint16_t) + layers_.used() * layerBytes;
+  return vertices_.used() * sizeof(ChunkVertex) + indices_.used() * sizeof(uint16_t) +
+         clusters_.used() * kClusterBytes + layers_.used() * layerBytes;
 }
 
 bool ChunkPools::isPending(const GpuChunk& chunk) const {
@@ -170,9 +211,17 @@ void ChunkPools::recordUploads(const vk::raii::CommandBuffer& commands) {
   if (vertexCopies_.empty()) return;
   commands.copyBuffer(*staging_.buffer, *vertexBuffer_.buffer, vertexCopies_);
   commands.copyBuffer(*staging_.buffer, *indexBuffer_.buffer, indexCopies_);
+  commands.copyBuffer(*staging_.buffer, *clusterBuffer_.buffer, clusterCopies_);
+  // The last owner's visibility is not the new one's.
+  for (const vk::BufferCopy& copy : clusterCopies_) {
+    constexpr vk::DeviceSize kRecord = sizeof(shader::ClusterRecord);
+    commands.fillBuffer(*visibleBuffer_.buffer, copy.dstOffset / kRecord * sizeof(uint32_t),
+                        copy.size / kRecord * sizeof(uint32_t), 0);
+  }
   recordMemoryBarrier(commands, vk::PipelineStageFlagBits2::eTransfer, vk::AccessFlagBits2::eTransferWrite,
-                      vk::PipelineStageFlagBits2::eVertexInput,
-                      vk::AccessFlagBits2::eVertexAttributeRead | vk::AccessFlagBits2::eIndexRead);
+                      vk::PipelineStageFlagBits2::eVertexInput | vk::PipelineStageFlagBits2::eComputeShader,
+                      vk::AccessFlagBits2::eVertexAttributeRead | vk::AccessFlagBits2::eIndexRead |
+                          vk::AccessFlagBits2::eShaderStorageRead | vk::AccessFlagBits2::eShaderStorageWrite);
   if (!textureCopies_.empty()) {
     std::vector<vk::ImageMemoryBarrier2> before, after;
     for (const vk::BufferImageCopy& copy : textureCopies_) {
@@ -193,6 +242,7 @@ void ChunkPools::recordUploads(const vk::raii::CommandBuffer& commands) {
   }
   vertexCopies_.clear();
   indexCopies_.clear();
+  clusterCopies_.clear();
   textureCopies_.clear();
 }
 

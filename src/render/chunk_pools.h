@@ -1,5 +1,6 @@
-// Where chunks live on the GPU: one buffer of vertices, one of indices, one array of textures, all made at start with
-// the budget split between them, so that the budget cannot be exceeded and no frame allocates. Owner thread: render.
+// Where chunks live on the GPU: one buffer of vertices, one of indices, one of clusters, one array of textures, all
+// made at start with the budget split between them, so that the budget cannot be exceeded and no frame allocates. Owner
+// thread: render.
 #pragma once
 
 #include <optional>
@@ -8,11 +9,12 @@
 #include "gpu/barrier.h"
 #include "paging/terrain_cache.h"
 #include "render/range_allocator.h"
+#include "shared/cull_types.h"
 
 namespace eye {
 
 struct PoolPlan {
-  uint32_t layers = 0, vertices = 0, indices = 0;
+  uint32_t layers = 0, vertices = 0, indices = 0, clusters = 0;
   bool operator==(const PoolPlan&) const = default;
 };
 
@@ -36,6 +38,10 @@ class ChunkPools {
 
   vk::Buffer vertexBuffer() const { return *vertexBuffer_.buffer; }
   vk::Buffer indexBuffer() const { return *indexBuffer_.buffer; }
+  const GpuBuffer& clusterBuffer() const { return clusterBuffer_; }
+  uint32_t clusterCapacity() const { return clusters_.capacity(); }
+  // A word for each cluster: not 0 where the last late pass found it visible. 0 for a chunk that has just come.
+  const GpuBuffer& visibleBuffer() const { return visibleBuffer_; }
   const GpuImage& textures() const { return textures_; }
 
  private:
@@ -47,11 +53,12 @@ class ChunkPools {
   const GpuDevice& gpu_;
   int textureSize_;
   uint64_t chainBytes_;  // of one texture as it is uploaded
-  RangeAllocator vertices_, indices_, layers_;
-  GpuBuffer vertexBuffer_, indexBuffer_, staging_;
+  RangeAllocator vertices_, indices_, clusters_, layers_;
+  GpuBuffer vertexBuffer_, indexBuffer_, clusterBuffer_, visibleBuffer_, staging_;
   GpuImage textures_;
   uint64_t stagedBytes_ = 0;
-  std::vector<vk::BufferCopy> vertexCopies_, indexCopies_;
+  std::vector<vk::BufferCopy> vertexCopies_, indexCopies_, clusterCopies_;
+  std::vector<shader::ClusterRecord> records_;  // of the chunk at hand
   std::vector<vk::BufferImageCopy> textureCopies_;
 };
 

@@ -12,11 +12,9 @@ namespace {
 constexpr size_t kFirstCapacity = 4096;
 constexpr size_t kCommandsPerChunk = 5;  // a surface and four skirts
 
-void append(std::span<vk::DrawIndexedIndirectCommand> commands, const ChunkDraw& draw, uint32_t firstIndex,
-            uint32_t indexCount, uint32_t instance, DrawCounts& counts) {
-  commands[counts.commands++] =
-      vk::DrawIndexedIndirectCommand(indexCount, 1, firstIndex, static_cast<int32_t>(draw.gpu.vertexOffset), instance);
-  counts.triangles += indexCount / 3;
+vk::DrawIndexedIndirectCommand commandOf(const ChunkDraw& draw, uint32_t firstIndex, uint32_t indexCount,
+                                         uint32_t instance) {
+  return {indexCount, 1, firstIndex, static_cast<int32_t>(draw.gpu.vertexOffset), instance};
 }
 
 }  // namespace
@@ -42,14 +40,17 @@ DrawCounts DrawLists::write(std::span<const ChunkDraw> draws, const Vec3d& eyeEc
   for (uint32_t i = 0; i < draws.size(); ++i) {
     const ChunkDraw& draw = draws[i];
     records[i] = drawData(draw, eyeEcefM, textureSize);
-    append(commands, draw, draw.gpu.firstIndex, draw.gpu.indexCount, i, counts);
+    commands[counts.surfaces++] = commandOf(draw, draw.gpu.firstIndex, draw.gpu.indexCount, i);
+    counts.surfaceTriangles += draw.gpu.indexCount / 3;
     counts.vertices += draw.gpu.vertexCount;
   }
   for (uint32_t i = 0; i < draws.size(); ++i) {
     for (size_t side = 0; side < 4; ++side) {
       const SkirtRange& skirt = draws[i].skirts[side];
       if ((draws[i].skirtMask & (1 << side)) == 0 || skirt.indexCount == 0) continue;
-      append(commands, draws[i], draws[i].gpu.firstIndex + skirt.firstIndex, skirt.indexCount, i, counts);
+      commands[counts.surfaces + counts.skirts++] =
+          commandOf(draws[i], draws[i].gpu.firstIndex + skirt.firstIndex, skirt.indexCount, i);
+      counts.skirtTriangles += skirt.indexCount / 3;
     }
   }
   return counts;

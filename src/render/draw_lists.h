@@ -9,8 +9,9 @@
 namespace eye {
 
 struct DrawCounts {
-  uint32_t commands = 0;
-  uint64_t triangles = 0, vertices = 0;  // vertices: those of the chunks drawn
+  uint32_t surfaces = 0, skirts = 0;  // commands, the surfaces' first
+  uint64_t surfaceTriangles = 0, skirtTriangles = 0;
+  uint64_t vertices = 0;  // those of the chunks drawn
 };
 
 class DrawLists {

@@ -6,6 +6,7 @@
 #include "gpu/pipeline_cache.h"
 #include "gpu/swapchain.h"
 #include "gpu/timestamps.h"
+#include "render/cull_pass.h"
 #include "render/frame_data.h"
 #include "render/overlay.h"
 #include "render/scene_pass.h"
@@ -23,6 +24,8 @@ struct Renderer::Impl {
   vk::raii::PipelineCache cache{nullptr};
   std::unique_ptr<ChunkPools> pools;
   std::unique_ptr<DrawLists> lists;
+  std::unique_ptr<CullLists> cullLists;
+  std::unique_ptr<CullPass> cull;
   std::unique_ptr<ScenePass> scene;
   std::unique_ptr<Overlay> overlay;
   std::unique_ptr<Timestamps> timestamps;
@@ -35,7 +38,10 @@ struct Renderer::Impl {
 
   vk::Format colourFormat() const;
   void resizeTargets(int widthPx, int heightPx);
-  void record(const FrameInput& input, uint32_t commandCount, std::optional<uint32_t> shown);
+  void prepareCulling(const FrameInput& input);
+  void record(const FrameInput& input, const DrawCounts& counts, std::optional<uint32_t> shown);
+  void recordScene(const FrameInput& input, const DrawCounts& counts);
+  void recordCulledScene(const FrameInput& input, const DrawCounts& counts);
   void submitAndWait(std::optional<uint32_t> shown);
   std::span<const uint8_t> pictureRgba();
   void readTimes(FrameOutput& output);
@@ -75,6 +81,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     GLFWwindow* window = options.window ? impl->window->handle() : nullptr;
     impl->scene = std::make_unique<ScenePass>(device, impl->cache, impl->colourFormat());
     impl->lists = std::make_unique<DrawLists>(device);
+    impl->cullLists = std::make_unique<CullLists>(device);
+    impl->cull = std::make_unique<CullPass>(device, impl->cache);
+    impl->cull->bind(device, *impl->pools, *impl->cullLists);
     impl->overlay = std::make_unique<Overlay>(device, impl->cache, impl->colourFormat(), window);
     impl->timestamps = std::make_unique<Timestamps>(device);
     impl->scene->bindTextures(device, impl->pools->textures());
@@ -117,9 +126,10 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     impl.lists->reserve(*impl.gpu, input.draws.size());
     impl.scene->frame() = frameData(input);
     const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
+    if (input.depthMapPx) impl.prepareCulling(input);
     std::optional<uint32_t> shown;
     if (impl.swapchain != nullptr) shown = impl.swapchain->acquire(*impl.gpu);
-    impl.record(input, counts.commands, shown);
+    impl.record(input, counts, shown);
     impl.submitAndWait(shown);
     impl.pools->staged();
     impl.drawn = true;
@@ -127,9 +137,14 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     FrameOutput output;
     output.widthPx = impl.targets.widthPx;
     output.heightPx = impl.targets.heightPx;
-    output.triangles = counts.triangles;
+    output.triangles = counts.surfaceTriangles + counts.skirtTriangles;
     output.vertices = counts.vertices;
-    output.draws = counts.commands;
+    output.draws = counts.surfaces + counts.skirts;
+    if (input.depthMapPx) {
+      output.clusters = impl.cullLists->counts();
+      output.triangles = output.clusters.trianglesDrawn + counts.skirtTriangles;
+      output.draws = output.clusters.drawn + counts.skirts;
+    }
     if (input.readColour) output.rgba = impl.pictureRgba();
     if (input.readDepth) output.depth = impl.targets.depthBack.as<const float>();
     impl.readTimes(output);
@@ -150,14 +165,57 @@ void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
   overlay->bindTargets(*gpu, targets);
 }
 
-void Renderer::Impl::record(const FrameInput& input, uint32_t commandCount, std::optional<uint32_t> shown) {
+void Renderer::Impl::prepareCulling(const FrameInput& input) {
+  const glm::ivec2 picturePx(input.view.widthPx, input.view.heightPx);
+  if (cullLists->reserve(*gpu, input.draws, picturePx, *input.depthMapPx)) cull->bind(*gpu, *pools, *cullLists);
+  cullLists->write(input.draws, input.view, scene->frame().clipFromEcef, *input.depthMapPx, input.freezeCulling);
+}
+
+void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
+  scene->begin(commands, targets, false, input.background);
+  scene->drawTerrain(commands, *gpu, *pools, lists->draws(), lists->commands(), 0, counts.surfaces + counts.skirts);
+  if (!input.background) scene->drawSky(commands);
+  scene->end(commands);
+  timestamps->mark(commands, "scene");
+}
+
+// Two passes: what was visible in the last frame, then what else its depth does not hide. The skirts, few and mostly
+// hidden, are not tested.
+void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts& counts) {
+  const auto draw = [&](const GpuBuffer& indirect, uint32_t first, uint32_t count) {
+    scene->drawTerrain(commands, *gpu, *pools, lists->draws(), indirect, first, count);
+  };
+  cull->recordEarly(commands, *cullLists);
+  timestamps->mark(commands, "cull_early");
+  scene->begin(commands, targets, false, input.background);
+  draw(cullLists->earlyBuffer(), 0, cullLists->candidateCount());
+  scene->end(commands);
+  timestamps->mark(commands, "early");
+  if (!input.freezeCulling) {
+    cull->recordDepthPyramid(commands, targets, *cullLists);
+    timestamps->mark(commands, "depth_map");
+    cull->recordLate(commands, *cullLists);
+    timestamps->mark(commands, "cull_late");
+  }
+  scene->begin(commands, targets, true, input.background);
+  if (!input.freezeCulling) draw(cullLists->lateBuffer(), 0, cullLists->candidateCount());
+  draw(lists->commands(), counts.surfaces, counts.skirts);
+  if (!input.background) scene->drawSky(commands);
+  scene->end(commands);
+  timestamps->mark(commands, "late");
+}
+
+void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, std::optional<uint32_t> shown) {
   const TraceScope scope("record");
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   timestamps->begin(commands);
   pools->recordUploads(commands);
   timestamps->mark(commands, "upload");
-  scene->record(commands, *gpu, targets, *pools, *lists, commandCount, input.background);
-  timestamps->mark(commands, "scene");
+  if (input.depthMapPx && cullLists->candidateCount() > 0) {
+    recordCulledScene(input, counts);
+  } else {
+    recordScene(input, counts);
+  }
   if (input.overlay) {
     overlay->record(commands, targets, input.overlay);
     timestamps->mark(commands, "overlay");
@@ -222,6 +280,24 @@ std::span<const uint8_t> Renderer::Impl::pictureRgba() {
     rgba[i + 3] = read[i + 3];
   }
   return rgba;
+}
+
+CullReadBack Renderer::readCulling() const {
+  const GpuDevice& gpu = *impl_->gpu;
+  const CullLists& lists = *impl_->cullLists;
+  const size_t candidates = lists.candidateCount();
+  const shader::CullParams params = lists.params();
+  const auto pixels = static_cast<size_t>(params.picturePx.x) * static_cast<size_t>(params.picturePx.y);
+  return {.params = params,
+          .chunks = readBuffer<shader::CullChunk>(gpu, lists.chunksBuffer(), lists.chunkCount()),
+          .candidates = readBuffer<shader::CullCandidate>(gpu, lists.candidatesBuffer(), candidates),
+          .clusters =
+              readBuffer<shader::ClusterRecord>(gpu, impl_->pools->clusterBuffer(), impl_->pools->clusterCapacity()),
+          .early = readBuffer<shader::DrawCommand>(gpu, lists.earlyBuffer(), candidates),
+          .late = readBuffer<shader::DrawCommand>(gpu, lists.lateBuffer(), candidates),
+          .fates = readBuffer<uint32_t>(gpu, lists.fatesBuffer(), candidates),
+          .depth = readBuffer<float>(gpu, lists.depthBuffer(), pixels),
+          .pyramid = readBuffer<float>(gpu, lists.pyramidBuffer(), pyramidLayout(params.mapPx).texels)};
 }
 
 void Renderer::presentAgain() {

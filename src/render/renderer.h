@@ -14,6 +14,7 @@
 #include "geo/view.h"
 #include "gpu/device_description.h"
 #include "paging/terrain_cache.h"
+#include "shared/cull_types.h"
 
 namespace eye {
 
@@ -36,6 +37,7 @@ struct ChunkDraw {
   float skirtDepthM = 0;
   LatticePoint originLattice{};
   double stepM = 1;
+  OrientedBox box;                         // of the surface, what its clusters' bounds refer to
   glm::vec3 upEcef{};                      // at the chunk's centre
   std::array<glm::vec3, 4> outwardEcef{};  // by Side: horizontal, away from the chunk, for the skirts' flare
   uint32_t textureLayer = 0;
@@ -52,8 +54,17 @@ struct FrameInput {
   std::span<const ChunkDraw> draws;  // front to back
   Lighting lighting;
   std::optional<glm::vec3> background;  // instead of the sky, without haze: for tests that look for holes
+  // Occlusion culling with a depth map of this size, see CullPass; nothing: every draw as it is.
+  std::optional<glm::ivec2> depthMapPx;
+  bool freezeCulling = false;  // with depthMapPx: draws the clusters that the last frame not frozen found visible
   bool readColour = false, readDepth = false;
   std::function<void()> overlay;  // Dear ImGui calls; empty: none
+};
+
+// How many clusters each test of the culling pass turned away, and what was drawn.
+struct CullCounts {
+  uint32_t considered = 0, outside = 0, backFacing = 0, occluded = 0, drawn = 0;
+  uint64_t trianglesDrawn = 0, trianglesOccluded = 0;
 };
 
 struct PassTime {
@@ -65,10 +76,23 @@ struct PassTime {
 struct FrameOutput {
   double gpuMs = 0;
   std::vector<PassTime> passes;
-  uint64_t triangles = 0, vertices = 0, draws = 0;  // submitted
+  uint64_t triangles = 0, vertices = 0, draws = 0;  // submitted; vertices: of the chunks drawn
+  CullCounts clusters;                              // all 0 without a depth map
   std::span<const uint8_t> rgba;                    // width * height * 4, row 0 on top; empty unless asked for
   std::span<const float> depth;                     // reversed-Z: near / z, 0 where nothing is
   int widthPx = 0, heightPx = 0;                    // of this frame: a window may have been resized
+};
+
+// What the culling passes read and wrote in the last frame, copied from the GPU: for the CPU mirror that checks them.
+// By candidate: `early` and `fates`; by cluster of the pool: `clusters`.
+struct CullReadBack {
+  shader::CullParams params;
+  std::vector<shader::CullChunk> chunks;
+  std::vector<shader::CullCandidate> candidates;
+  std::vector<shader::ClusterRecord> clusters;
+  std::vector<shader::DrawCommand> early, late;
+  std::vector<uint32_t> fates;
+  std::vector<float> depth, pyramid;  // of the early pass; all levels
 };
 
 class Renderer final : public GpuStore {
@@ -84,6 +108,8 @@ class Renderer final : public GpuStore {
 
   // Draws, waits until the frame is complete, presents in a window. An error where the device is lost.
   Result<FrameOutput> drawFrame(const FrameInput& input);
+  // Of the last frame with a depth map. Slow.
+  CullReadBack readCulling() const;
   // Shows the last frame again without drawing it (a window that was covered); nothing off-screen.
   void presentAgain();
 

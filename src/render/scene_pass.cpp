@@ -97,22 +97,27 @@ void ScenePass::bindTextures(const GpuDevice& gpu, const GpuImage& textures) {
       vk::WriteDescriptorSet(*set_, EYE_BIND_TEXTURES, 0, Type::eCombinedImageSampler, info), nullptr);
 }
 
-void ScenePass::record(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const Targets& targets,
-                       const ChunkPools& pools, const DrawLists& lists, uint32_t commandCount,
-                       const std::optional<glm::vec3>& background) const {
-  // The last frame may have copied from both.
-  const Usage before = usageDiscarded(vk::PipelineStageFlagBits2::eTransfer);
-  const std::array barriers{imageBarrier(targets.colour, before, usageColourTarget()),
-                            imageBarrier(targets.depth, before, usageDepthTarget())};
-  recordBarriers(commands, barriers);
-
+void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& targets, bool goesOn,
+                      const std::optional<glm::vec3>& background) const {
+  if (goesOn) {
+    const std::array barriers{imageBarrier(targets.colour, usageColourTarget(), usageColourTarget()),
+                              imageBarrier(targets.depth, usageDepthTarget(), usageDepthTarget())};
+    recordBarriers(commands, barriers);
+  } else {
+    // The last frame may have copied from both.
+    const Usage before = usageDiscarded(vk::PipelineStageFlagBits2::eTransfer);
+    const std::array barriers{imageBarrier(targets.colour, before, usageColourTarget()),
+                              imageBarrier(targets.depth, before, usageDepthTarget())};
+    recordBarriers(commands, barriers);
+  }
+  using Load = vk::AttachmentLoadOp;
   const vk::Rect2D all({0, 0}, {static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx)});
   vk::RenderingAttachmentInfo colour, depth;
   colour.setImageView(*targets.colour.view).setImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
-  colour.setLoadOp(background ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eDontCare);
+  colour.setLoadOp(goesOn ? Load::eLoad : background ? Load::eClear : Load::eDontCare);
   if (background) colour.setClearValue(vk::ClearColorValue(background->r, background->g, background->b, 1.0f));
   depth.setImageView(*targets.depth.view).setImageLayout(vk::ImageLayout::eDepthAttachmentOptimal);
-  depth.setLoadOp(vk::AttachmentLoadOp::eClear);
+  depth.setLoadOp(goesOn ? Load::eLoad : Load::eClear);
   depth.setClearValue(vk::ClearDepthStencilValue(static_cast<float>(EYE_CLEAR_DEPTH), 0));
   vk::RenderingInfo info;
   info.setRenderArea(all).setLayerCount(1).setColorAttachments(colour).setPDepthAttachment(&depth);
@@ -121,21 +126,24 @@ void ScenePass::record(const vk::raii::CommandBuffer& commands, const GpuDevice&
       0, vk::Viewport(0, 0, static_cast<float>(targets.widthPx), static_cast<float>(targets.heightPx), 0, 1));
   commands.setScissor(0, all);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, nullptr);
+}
 
+void ScenePass::drawTerrain(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
+                            const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first, uint32_t count) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *terrain_);
-  commands.bindVertexBuffers(0, {pools.vertexBuffer(), *lists.draws().buffer}, {0, 0});
+  commands.bindVertexBuffers(0, {pools.vertexBuffer(), *draws.buffer}, {0, 0});
   commands.bindIndexBuffer(pools.indexBuffer(), 0, vk::IndexType::eUint16);
   constexpr uint32_t kStride = sizeof(vk::DrawIndexedIndirectCommand);
   const uint32_t most = gpu.properties.limits.maxDrawIndirectCount;
-  for (uint32_t first = 0; first < commandCount; first += std::min(most, commandCount - first)) {
-    commands.drawIndexedIndirect(*lists.commands().buffer, vk::DeviceSize{first} * kStride,
-                                 std::min(most, commandCount - first), kStride);
+  for (uint32_t done = 0; done < count; done += std::min(most, count - done)) {
+    commands.drawIndexedIndirect(*indirect.buffer, vk::DeviceSize{first + done} * kStride, std::min(most, count - done),
+                                 kStride);
   }
-  if (!background) {
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *sky_);
-    commands.draw(3, 1, 0, 0);
-  }
-  commands.endRendering();
+}
+
+void ScenePass::drawSky(const vk::raii::CommandBuffer& commands) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *sky_);
+  commands.draw(3, 1, 0, 0);
 }
 
 }  // namespace eye

@@ -1,4 +1,4 @@
-// The scene: terrain, then the sky where no terrain is, in one render pass; with the descriptors and pipelines of both.
+// The scene: terrain, then the sky where no terrain is, with the descriptors and pipelines of both.
 #pragma once
 
 #include "render/chunk_pools.h"
@@ -15,10 +15,15 @@ class ScenePass {
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
-  // Leaves colour and depth as targets. `background`: a flat colour instead of the sky.
-  void record(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const Targets& targets,
-              const ChunkPools& pools, const DrawLists& lists, uint32_t commandCount,
-              const std::optional<glm::vec3>& background) const;
+  // One render pass, or two that go on with what the first has drawn: begin, draw, end. `background`: a flat colour
+  // instead of the sky. Colour and depth are left as targets.
+  void begin(const vk::raii::CommandBuffer& commands, const Targets& targets, bool goesOn,
+             const std::optional<glm::vec3>& background) const;
+  // Indirect commands `first` to `first + count - 1`; their firstInstance is the DrawData's index.
+  void drawTerrain(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
+                   const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first, uint32_t count) const;
+  void drawSky(const vk::raii::CommandBuffer& commands) const;
+  void end(const vk::raii::CommandBuffer& commands) const { commands.endRendering(); }
 
  private:
   GpuBuffer frame_;

@@ -14,6 +14,7 @@ LoadedChunk triangle(int textureSize) {
       {0, -10000, -10000, 0, 0, 0, 0, 0}, {0, 10000, -10000, 0, 65535, 0, 0, 0}, {0, 0, 10000, 0, 0, 65535, 0, 0}};
   chunk.mesh.indices = {0, 1, 2};
   chunk.surfaceIndexCount = 3;
+  chunk.mesh.clusters = {{.firstIndex = 0, .indexCount = 3, .boxMax = {65535, 65535, 65535}}};
   chunk.texels.assign(mipChainBytes(textureSize), 128);
   return chunk;
 }
@@ -26,6 +27,7 @@ Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
   ChunkDraw draw;
   draw.gpu = *gpu;
   draw.originLattice = LatticePoint(static_cast<int64_t>(kSemiMajorM), 0, 0);
+  draw.box = {Vec3d(kSemiMajorM, 0, 0), {Vec3d(0, 10000, 0), Vec3d(0, 0, 10000), Vec3d(1, 0, 0)}};
   draw.upEcef = {1, 0, 0};
   draw.textureLayer = static_cast<uint32_t>(gpu->textureLayer);
   FrameInput input;
@@ -39,6 +41,8 @@ Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
     ImGui::End();
   };
   auto drawn = renderer.drawFrame(input);
+  input.depthMapPx = glm::ivec2(32, 24);
+  if (drawn) drawn = renderer.drawFrame(input);
   renderer.release(*gpu);
   if (!drawn) return tl::unexpected(drawn.error());
   return {};

@@ -111,6 +111,7 @@ MadeChunk makeChunk(const Patch& patch, const HeightFunction& heightM, std::vect
   made.draw.skirts = made.loaded.skirts;
   made.draw.originLattice = made.origin;
   made.draw.stepM = patch.stepM;
+  made.draw.box = made.loaded.meta.box;
   const Mat3d enu = ecefFromEnu(midLat, midLon);
   const glm::vec3 east(enu[0]), north(enu[1]);
   made.draw.upEcef = glm::vec3(enu[2]);

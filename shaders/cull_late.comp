@@ -1,0 +1,37 @@
+// Late pass: tests every cluster against the depth map, draws those that show and were not drawn early, and keeps who
+// is visible for the next frame.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared/cull_buffers.h"
+
+layout(local_size_x = EYE_CULL_GROUP) in;
+
+float depthAt(ivec2 texel, int level) {
+  return pyramid[params.levelOffset[level] + texel.y * levelSize(params.mapPx, level).x + texel.x];
+}
+
+// Behind the farthest depth of the rectangle's footprint: its four corners at a level where it spans two texels.
+bool isOccluded(MapRect rect) {
+  if (!rect.isKnown) return false;
+  int level = levelOf(params, rect);
+  ivec2 low = texelAt(rect.low, params.mapPx, level), high = texelAt(rect.high, params.mapPx, level);
+  float farthest = min(min(depthAt(low, level), depthAt(ivec2(high.x, low.y), level)),
+                       min(depthAt(ivec2(low.x, high.y), level), depthAt(high, level)));
+  return rect.nearest < farthest;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= params.candidateCount) return;
+  CullCandidate candidate = candidates[i];
+  CullChunk chunk = chunks[candidate.chunk];
+  ClusterRecord cluster = clusters[candidate.cluster];
+  CullBox box = boxOf(chunk, cluster);
+  ClipBox clip = clipBoxOf(params, box);
+  uint fate = fateInView(box, clip, cluster);
+  if (fate == EYE_FATE_VISIBLE && isOccluded(mapRectOf(params, clip))) fate = EYE_FATE_OCCLUDED;
+  bool wasDrawn = early[i].instanceCount != 0u, isDrawn = fate == EYE_FATE_VISIBLE && !wasDrawn;
+  visible[candidate.cluster] = fate == EYE_FATE_VISIBLE ? 1u : 0u;
+  late[i] = commandOf(chunk, cluster, isDrawn);
+  fates[i] = fate | (wasDrawn || isDrawn ? EYE_FATE_DRAWN : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
+}

@@ -1,0 +1,122 @@
+#include "render/cull_lists.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace eye {
+namespace {
+
+using Use = vk::BufferUsageFlagBits;
+
+// More than a view of mountains takes at 1 pixel.
+constexpr size_t kFirstChunks = 1024, kFirstCandidates = 16384;
+
+size_t clustersOf(std::span<const ChunkDraw> draws) {
+  size_t count = 0;
+  for (const ChunkDraw& draw : draws) count += draw.gpu.clusterCount;
+  return count;
+}
+
+// Makes a buffer for at least `count` elements where there is none so large.
+bool grow(const GpuDevice& gpu, size_t count, size_t elementBytes, vk::BufferUsageFlags usage, MemoryUse use,
+          size_t& capacity, GpuBuffer& buffer) {
+  if (count <= capacity) return false;
+  capacity = std::bit_ceil(count);
+  buffer = createBuffer(gpu, capacity * elementBytes, usage, use);
+  return true;
+}
+
+}  // namespace
+
+PyramidLayout pyramidLayout(glm::ivec2 mapPx) {
+  PyramidLayout layout;
+  for (glm::ivec2 size = mapPx;; size = glm::max(size / 2, glm::ivec2(1))) {
+    EYE_CHECK(layout.levels < EYE_MAX_DEPTH_LEVELS);
+    layout.offset[static_cast<size_t>(layout.levels++)] = static_cast<int32_t>(layout.texels);
+    layout.texels += static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
+    if (size == glm::ivec2(1)) return layout;
+  }
+}
+
+CullLists::CullLists(const GpuDevice& gpu) {
+  params_ = createBuffer(gpu, sizeof(shader::CullParams), Use::eStorageBuffer, MemoryUse::upload);
+  reserve(gpu, {}, {1, 1}, {1, 1});
+}
+
+bool CullLists::reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx,
+                        glm::ivec2 mapPx) {
+  bool made = grow(gpu, std::max(draws.size(), kFirstChunks), sizeof(shader::CullChunk), Use::eStorageBuffer,
+                   MemoryUse::upload, chunkCapacity_, chunks_);
+  const size_t candidates = std::max(clustersOf(draws), kFirstCandidates);
+  if (candidates > candidateCapacity_) {
+    made = true;
+    candidateCapacity_ = std::bit_ceil(candidates);
+    const auto make = [&](size_t elementBytes, vk::BufferUsageFlags usage, MemoryUse use) {
+      return createBuffer(gpu, candidateCapacity_ * elementBytes, Use::eStorageBuffer | usage, use);
+    };
+    candidates_ = make(sizeof(shader::CullCandidate), {}, MemoryUse::upload);
+    early_ = make(sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, MemoryUse::device);
+    late_ = make(sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, MemoryUse::device);
+    fates_ = make(sizeof(uint32_t), {}, MemoryUse::readBack);
+  }
+  const auto pixels = static_cast<size_t>(picturePx.x) * static_cast<size_t>(picturePx.y);
+  made |= grow(gpu, pixels, sizeof(float), Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc,
+               MemoryUse::device, depthCapacity_, depth_);
+  made |= grow(gpu, pyramidLayout(mapPx).texels, sizeof(float), Use::eStorageBuffer | Use::eTransferSrc,
+               MemoryUse::device, pyramidCapacity_, pyramid_);
+  return made;
+}
+
+void CullLists::write(std::span<const ChunkDraw> draws, const View& view, const glm::mat4& clipFromEcef,
+                      glm::ivec2 mapPx, bool frozen) {
+  const auto chunks = chunks_.as<shader::CullChunk>();
+  const auto candidates = candidates_.as<shader::CullCandidate>();
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < draws.size(); ++i) {
+    const ChunkDraw& draw = draws[i];
+    chunks[i] = {.centre_ecef = glm::vec3(draw.box.centreEcefM - view.eyeEcefM),
+                 .vertexOffset = static_cast<int32_t>(draw.gpu.vertexOffset),
+                 .axisX_ecef = glm::vec3(draw.box.halfAxesEcefM[0]),
+                 .draw = i,
+                 .axisY_ecef = glm::vec3(draw.box.halfAxesEcefM[1]),
+                 .unused0 = 0,
+                 .axisZ_ecef = glm::vec3(draw.box.halfAxesEcefM[2]),
+                 .unused1 = 0};
+    for (uint32_t k = 0; k < draw.gpu.clusterCount; ++k) candidates[count++] = {draw.gpu.clusterOffset + k, i};
+  }
+  candidateCount_ = count;
+  chunkCount_ = static_cast<uint32_t>(draws.size());
+
+  const PyramidLayout layout = pyramidLayout(mapPx);
+  const auto row = [&](int r) { return glm::vec3(clipFromEcef[0][r], clipFromEcef[1][r], clipFromEcef[2][r]); };
+  shader::CullParams& params = params_.as<shader::CullParams>()[0];
+  params.clipX_ecef = row(0);
+  params.clipY_ecef = row(1);
+  params.clipW_ecef = row(3);
+  params.nearM = static_cast<float>(view.frustum.nearM);
+  params.picturePx = {view.widthPx, view.heightPx};
+  params.mapPx = mapPx;
+  params.candidateCount = count;
+  params.isFrozen = frozen ? 1 : 0;
+  params.levelCount = layout.levels;
+  std::copy(layout.offset.begin(), layout.offset.end(), params.levelOffset);
+}
+
+CullCounts CullLists::counts() const {
+  CullCounts counts;
+  counts.considered = candidateCount_;
+  for (const uint32_t fate : fates_.as<const uint32_t>().first(candidateCount_)) {
+    const uint32_t triangles = fate >> EYE_FATE_BITS, why = fate & 3u;
+    const bool drawn = (fate & EYE_FATE_DRAWN) != 0;
+    counts.drawn += drawn;
+    if (drawn) counts.trianglesDrawn += triangles;
+    if (drawn) continue;
+    counts.outside += why == EYE_FATE_OUTSIDE;
+    counts.backFacing += why == EYE_FATE_BACK_FACING;
+    counts.occluded += why == EYE_FATE_OCCLUDED;
+    if (why == EYE_FATE_OCCLUDED) counts.trianglesOccluded += triangles;
+  }
+  return counts;
+}
+
+}  // namespace eye

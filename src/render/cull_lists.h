@@ -1,0 +1,50 @@
+// What the culling passes read and write in one frame: the drawn chunks and their clusters in, indirect commands and
+// the clusters' fates out, and the depth pyramid. Owner thread: render.
+#pragma once
+
+#include "gpu/memory.h"
+#include "render/renderer.h"
+#include "shared/cull_types.h"
+
+namespace eye {
+
+// Sizes and places of the pyramid's levels: halved, rounding down, to a single texel.
+struct PyramidLayout {
+  int levels = 0;
+  std::array<int32_t, EYE_MAX_DEPTH_LEVELS> offset{};
+  size_t texels = 0;
+};
+PyramidLayout pyramidLayout(glm::ivec2 mapPx);
+
+class CullLists {
+ public:
+  explicit CullLists(const GpuDevice& gpu);
+  // Makes room; nothing may be in flight. True where a buffer was made anew: descriptors are to be written again.
+  bool reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx);
+  // Fills what the shaders read: every cluster of the draws is a candidate, in the draws' order.
+  void write(std::span<const ChunkDraw> draws, const View& view, const glm::mat4& clipFromEcef, glm::ivec2 mapPx,
+             bool frozen);
+  // Of the frame that has just finished.
+  CullCounts counts() const;
+
+  uint32_t chunkCount() const { return chunkCount_; }
+  uint32_t candidateCount() const { return candidateCount_; }
+  const shader::CullParams& params() const { return params_.as<shader::CullParams>()[0]; }
+
+  // By binding, EYE_BIND_CULL_PARAMS and so on; the clusters and their visibility are the pools'.
+  const GpuBuffer& paramsBuffer() const { return params_; }
+  const GpuBuffer& chunksBuffer() const { return chunks_; }
+  const GpuBuffer& candidatesBuffer() const { return candidates_; }
+  const GpuBuffer& earlyBuffer() const { return early_; }
+  const GpuBuffer& lateBuffer() const { return late_; }
+  const GpuBuffer& fatesBuffer() const { return fates_; }
+  const GpuBuffer& depthBuffer() const { return depth_; }
+  const GpuBuffer& pyramidBuffer() const { return pyramid_; }
+
+ private:
+  size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0;
+  uint32_t chunkCount_ = 0, candidateCount_ = 0;
+  GpuBuffer params_, chunks_, candidates_, early_, late_, fates_, depth_, pyramid_;
+};
+
+}  // namespace eye

@@ -1,0 +1,78 @@
+#include "render/cull_mirror.h"
+
+#include "shared/cull.h"
+
+namespace eye::test {
+namespace {
+
+using namespace eye::shader;
+
+std::vector<float> pyramidOf(const CullReadBack& gpu) {
+  const CullParams& p = gpu.params;
+  std::vector<float> pyramid(gpu.pyramid.size(), -1.0f);
+  const auto at = [&](int level, int x, int y) -> float& {
+    return pyramid[static_cast<size_t>(p.levelOffset[level] + y * levelSize(p.mapPx, level).x + x)];
+  };
+  const auto farthestOf = [](ivec2 columns, ivec2 rows, const auto& value) {
+    float farthest = 1.0f;
+    for (int y = rows.x; y <= rows.y; ++y)
+      for (int x = columns.x; x <= columns.y; ++x) farthest = std::min(farthest, value(x, y));
+    return farthest;
+  };
+  for (int level = 0; level < p.levelCount; ++level) {
+    const ivec2 size = levelSize(p.mapPx, level), finer = levelSize(p.mapPx, level - 1);
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x) {
+        at(level, x, y) =
+            level == 0
+                ? farthestOf(pixelSpan(x, p.mapPx.x, p.picturePx.x), pixelSpan(y, p.mapPx.y, p.picturePx.y),
+                             [&](int px, int py) { return gpu.depth[static_cast<size_t>(py * p.picturePx.x + px)]; })
+                : farthestOf(finerSpan(x, size.x, finer.x), finerSpan(y, size.y, finer.y),
+                             [&](int tx, int ty) { return at(level - 1, tx, ty); });
+      }
+    }
+  }
+  return pyramid;
+}
+
+// Against every texel of the finest level that the rectangle touches at the level chosen: no shortcut.
+bool isOccluded(const CullParams& p, const std::vector<float>& pyramid, const MapRect& rect) {
+  if (!rect.isKnown) return false;
+  const int level = levelOf(p, rect);
+  const ivec2 low = texelAt(rect.low, p.mapPx, level), high = texelAt(rect.high, p.mapPx, level);
+  for (int y = low.y; y <= high.y; ++y) {
+    for (int x = low.x; x <= high.x; ++x) {
+      const float farthest = pyramid[static_cast<size_t>(p.levelOffset[level] + y * levelSize(p.mapPx, level).x + x)];
+      if (!(rect.nearest < farthest)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+CullMirror mirrorOf(const CullReadBack& gpu) {
+  CullMirror mirror;
+  mirror.pyramid = pyramidOf(gpu);
+  for (size_t i = 0; i < gpu.candidates.size(); ++i) {
+    const CullChunk& chunk = gpu.chunks[gpu.candidates[i].chunk];
+    const ClusterRecord& cluster = gpu.clusters[gpu.candidates[i].cluster];
+    const CullBox box = boxOf(chunk, cluster);
+    const ClipBox clip = clipBoxOf(gpu.params, box);
+    uint32_t fate = EYE_FATE_VISIBLE;
+    if (isOutsideFrustum(gpu.params, clip)) {
+      fate = EYE_FATE_OUTSIDE;
+    } else if (isBackFacing(box, cluster.cone)) {
+      fate = EYE_FATE_BACK_FACING;
+    } else if (isOccluded(gpu.params, mirror.pyramid, mapRectOf(gpu.params, clip))) {
+      fate = EYE_FATE_OCCLUDED;
+    }
+    const bool wasDrawn = gpu.early[i].instanceCount != 0, isDrawn = fate == EYE_FATE_VISIBLE && !wasDrawn;
+    mirror.fates.push_back(fate | (wasDrawn || isDrawn ? EYE_FATE_DRAWN : 0u) |
+                           (cluster.indexCount / 3u << EYE_FATE_BITS));
+    mirror.late.push_back({cluster.indexCount, isDrawn ? 1u : 0u, cluster.firstIndex, chunk.vertexOffset, chunk.draw});
+  }
+  return mirror;
+}
+
+}  // namespace eye::test

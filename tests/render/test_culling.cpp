@@ -1,0 +1,182 @@
+// Occlusion culling: never a pixel, and the GPU decides as its CPU mirror does.
+#include <catch2/catch.hpp>
+
+#include <random>
+
+#include "render/cull_lists.h"
+#include "render/cull_mirror.h"
+#include "render/scene.h"
+#include "shared/cull.h"
+
+using namespace eye;
+using namespace eye::test;
+
+namespace {
+
+constexpr int kWidth = 200, kHeight = 150;
+
+RendererOptions options() {
+  RendererOptions options;
+  options.widthPx = kWidth;
+  options.heightPx = kHeight;
+  options.validate = true;
+  return options;
+}
+
+struct Picture {
+  std::vector<uint8_t> rgba;
+  std::vector<float> depth;
+  CullCounts clusters;
+  bool operator==(const Picture& other) const { return rgba == other.rgba && depth == other.depth; }
+};
+
+Picture draw(Renderer& renderer, const FrameInput& input) {
+  const auto frame = renderer.drawFrame(input);
+  if (!frame) FAIL(frame.error().message);
+  return {{frame->rgba.begin(), frame->rgba.end()}, {frame->depth.begin(), frame->depth.end()}, frame->clusters};
+}
+
+// Low between the ridges, in any attitude.
+Pose randomPose(std::mt19937& random) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const double lat = uniform(48.95, 49.05), lon = uniform(19.93, 20.07);
+  const double aboveM = std::exp(uniform(std::log(5.0), std::log(1000.0)));
+  return {{lat, lon, ridgesM(lat, lon) + aboveM}, uniform(0, 360), uniform(-40, 20), uniform(-60, 60)};
+}
+
+size_t differing(std::span<const uint32_t> a, std::span<const uint32_t> b) {
+  size_t count = 0;
+  for (size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("occlusion culling changes no pixel, and the GPU culls as its CPU mirror") {
+  const auto renderer = makeRenderer(options());
+  if (!renderer) return;
+  const std::vector<ChunkDraw> draws = mountains(*renderer, 9, ecefFromGeodetic({49, 20, 2500}));
+  const glm::ivec2 maps[] = {{200, 150}, {64, 48}, {80, 61}, {37, 29}, {320, 240}, {1, 1}, {7, 1}};
+  std::mt19937 random(7);
+  CullCounts sum;
+  for (int round = 0; round < 60; ++round) {
+    INFO("pose " << round);
+    FrameInput input = lookFrom(randomPose(random), kWidth, kHeight, round % 3 == 0 ? 90 : 40);
+    input.draws = draws;
+    const Picture plain = draw(*renderer, input);
+    // Three times: the first draws early what another pose saw, the second what the first found, and only the third
+    // spares what the second found hidden.
+    for (int frame = 0; frame < 3; ++frame) {
+      input.depthMapPx = maps[static_cast<size_t>(round) % std::size(maps)];
+      const Picture culled = draw(*renderer, input);
+      for (size_t i = 0; i < plain.depth.size(); ++i) {
+        if (culled.depth[i] == plain.depth[i]) continue;
+        FAIL("frame " << frame << ": depth " << culled.depth[i] << " instead of " << plain.depth[i] << " at "
+                      << i % kWidth << ", " << i / kWidth);
+      }
+      REQUIRE((culled.rgba == plain.rgba));
+      const CullReadBack gpu = renderer->readCulling();
+      const CullMirror cpu = mirrorOf(gpu);
+      REQUIRE((gpu.pyramid == cpu.pyramid));
+      REQUIRE(differing(gpu.fates, cpu.fates) == 0);
+      sum.considered += culled.clusters.considered;
+      sum.outside += culled.clusters.outside;
+      sum.backFacing += culled.clusters.backFacing;
+      sum.occluded += culled.clusters.occluded;
+      sum.drawn += culled.clusters.drawn;
+    }
+    input.depthMapPx.reset();
+  }
+  CAPTURE(sum.considered, sum.outside, sum.backFacing, sum.occluded, sum.drawn);
+  CHECK(sum.occluded > sum.drawn / 20);  // the tests above must have had something to find
+  CHECK(sum.drawn > 0);
+  CHECK(renderer->validationMessages() == 0);
+}
+
+TEST_CASE("the depth map's texels cover every pixel and every finer texel") {
+  using namespace eye::shader;
+  const int maps[] = {1, 2, 3, 7, 37, 200, 320, 801}, pictures[] = {1, 16, 200, 799, 800, 1280};
+  for (const int map : maps) {
+    for (const int picture : pictures) {
+      for (int pixel = 0; pixel < picture; ++pixel) {
+        // The texel that mapRectOf finds for the pixel's centre.
+        const int texel = std::min(map - 1, static_cast<int>((pixel + 0.5) * map / picture));
+        const ivec2 span = pixelSpan(texel, map, picture);
+        REQUIRE((span.x <= pixel && pixel <= span.y && span.x >= 0 && span.y < picture));
+      }
+    }
+    for (int level = 1; (map >> level) > 0; ++level) {
+      const int size = levelSize({map, 1}, level).x, finer = levelSize({map, 1}, level - 1).x;
+      for (int x = 0; x < map; ++x) {
+        const int coarse = texelAt({x, 0}, {map, 1}, level).x, fine = texelAt({x, 0}, {map, 1}, level - 1).x;
+        const ivec2 span = finerSpan(coarse, size, finer);
+        REQUIRE((span.x <= fine && fine <= span.y && span.y < finer));
+      }
+    }
+  }
+}
+
+TEST_CASE("a rectangle spans at most two texels each way at its level, and none is finer") {
+  using namespace eye::shader;
+  std::mt19937 random(3);
+  for (int i = 0; i < 100000; ++i) {
+    const auto within = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random); };
+    const ivec2 map(within(1, 900), within(1, 700));
+    MapRect rect{};
+    rect.low = {within(0, map.x - 1), within(0, map.y - 1)};
+    rect.high = {within(rect.low.x, map.x - 1), within(rect.low.y, map.y - 1)};
+    CullParams params{};
+    params.levelCount = pyramidLayout(map).levels;
+    const int level = levelOf(params, rect);
+    const ivec2 low = texelAt(rect.low, map, level), high = texelAt(rect.high, map, level);
+    REQUIRE((high.x - low.x <= 1 && high.y - low.y <= 1 && level < params.levelCount));
+    if (level > 0) REQUIRE(std::max(rect.high.x - rect.low.x, rect.high.y - rect.low.y) > 1 << (level - 1));
+  }
+}
+
+TEST_CASE("a chunk in a place that another has left is not taken for visible") {
+  const auto renderer = makeRenderer(options());
+  if (!renderer) return;
+  const MadeChunk chunk = makeChunk({49, 20, 49.02, 20.03}, ridgesM, flatTexture(128, 90, 120, 60));
+  FrameInput input = lookFrom({{49.01, 20.015, 4000}, 0, -90, 0}, kWidth, kHeight);
+  input.depthMapPx = glm::ivec2(64, 48);
+  for (int owner = 0; owner < 2; ++owner) {
+    const std::vector<ChunkDraw> draws{addChunk(*renderer, chunk)};
+    input.draws = draws;
+    draw(*renderer, input);
+    const CullReadBack first = renderer->readCulling();
+    CHECK(std::ranges::none_of(first.early, [](const auto& command) { return command.instanceCount != 0; }));
+    CHECK(std::ranges::any_of(first.late, [](const auto& command) { return command.instanceCount != 0; }));
+    draw(*renderer, input);
+    const CullReadBack second = renderer->readCulling();
+    CHECK(std::ranges::any_of(second.early, [](const auto& command) { return command.instanceCount != 0; }));
+    CHECK(std::ranges::none_of(second.late, [](const auto& command) { return command.instanceCount != 0; }));
+    renderer->release(draws[0].gpu);
+  }
+}
+
+TEST_CASE("frozen culling draws what was visible when it froze, wherever the eye goes") {
+  const auto renderer = makeRenderer(options());
+  if (!renderer) return;
+  const std::vector<ChunkDraw> draws = mountains(*renderer, 7, ecefFromGeodetic({49, 20, 2500}));
+  FrameInput input = lookFrom({{49, 20, ridgesM(49, 20) + 60}, 40, 0, 0}, kWidth, kHeight);
+  input.draws = draws;
+  input.depthMapPx = glm::ivec2(100, 75);
+  draw(*renderer, input);
+  draw(*renderer, input);
+  const CullReadBack before = renderer->readCulling();
+  FrameInput away = lookFrom({{49, 20, 9000}, 40, -60, 0}, kWidth, kHeight);
+  away.draws = draws;
+  away.depthMapPx = input.depthMapPx;
+  away.freezeCulling = true;
+  draw(*renderer, away);
+  const CullReadBack frozen = renderer->readCulling();
+  size_t drawn = 0;
+  for (size_t i = 0; i < frozen.early.size(); ++i) {
+    const bool wasVisible = (before.fates[i] & 3u) == EYE_FATE_VISIBLE;
+    CHECK((frozen.early[i].instanceCount != 0) == wasVisible);
+    drawn += wasVisible;
+  }
+  CHECK(drawn > 0);
+  CHECK(drawn < frozen.early.size());
+}
