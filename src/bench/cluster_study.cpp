@@ -1,12 +1,16 @@
 #include "bench/cluster_study.h"
 
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <unordered_map>
+
+#include <fmt/format.h>
 
 #include "bench/cluster_methods.h"
 #include "bench/depth_probe.h"
 #include "paging/pager.h"
+#include "terrain/chunk_codec.h"
 
 namespace eye {
 namespace {
