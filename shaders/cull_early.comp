@@ -7,12 +7,16 @@
 layout(local_size_x = EYE_CULL_GROUP) in;
 
 void main() {
+  // Invocations beyond the last candidate stay for the barrier, on the last candidate's data.
   uint i = gl_GlobalInvocationID.x;
-  if (i >= params.candidateCount) return;
-  CullCandidate candidate = candidates[i];
+  CullCandidate candidate = candidates[min(i, params.candidateCount - 1u)];
   CullChunk chunk = chunks[candidate.chunk];
   ClusterRecord cluster = clusters[candidate.cluster];
   CullBox box = boxOf(chunk, cluster);
   bool inView = params.isFrozen != 0u || fateInView(box, clipBoxOf(params, box), cluster) == EYE_FATE_VISIBLE;
-  early[i] = commandOf(chunk, cluster, inView && visible[candidate.cluster] != 0u);
+  bool isDrawn = i < params.candidateCount && inView && visible[candidate.cluster] != 0u;
+  DrawCommand command = commandOf(candidate.chunk, chunk.vertexOffset, chunk.draw, cluster, isDrawn);
+  if (i >= params.candidateCount) return;
+  early[i] = command;
+  fates[i] = (isDrawn ? EYE_FATE_EARLY : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
 }

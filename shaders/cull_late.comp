@@ -21,8 +21,10 @@ bool isOccluded(MapRect rect) {
 }
 
 void main() {
+  // Invocations beyond the last candidate stay for the barrier, on the last candidate's data.
   uint i = gl_GlobalInvocationID.x;
-  if (i >= params.candidateCount) return;
+  bool isCandidate = i < params.candidateCount;
+  i = min(i, params.candidateCount - 1u);
   CullCandidate candidate = candidates[i];
   CullChunk chunk = chunks[candidate.chunk];
   ClusterRecord cluster = clusters[candidate.cluster];
@@ -30,8 +32,11 @@ void main() {
   ClipBox clip = clipBoxOf(params, box);
   uint fate = fateInView(box, clip, cluster);
   if (fate == EYE_FATE_VISIBLE && isOccluded(mapRectOf(params, clip))) fate = EYE_FATE_OCCLUDED;
-  bool wasDrawn = early[i].instanceCount != 0u, isDrawn = fate == EYE_FATE_VISIBLE && !wasDrawn;
+  uint wasDrawn = fates[i] & EYE_FATE_EARLY;
+  bool isDrawn = isCandidate && fate == EYE_FATE_VISIBLE && wasDrawn == 0u;
+  DrawCommand command = commandOf(candidate.chunk, chunk.vertexOffset, chunk.draw, cluster, isDrawn);
+  if (!isCandidate) return;
   visible[candidate.cluster] = fate == EYE_FATE_VISIBLE ? 1u : 0u;
-  late[i] = commandOf(chunk, cluster, isDrawn);
-  fates[i] = fate | (wasDrawn || isDrawn ? EYE_FATE_DRAWN : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
+  late[i] = command;
+  fates[i] = fate | wasDrawn | (isDrawn ? EYE_FATE_LATE : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
 }

@@ -28,8 +28,11 @@
 #define EYE_FATE_OUTSIDE 1u
 #define EYE_FATE_BACK_FACING 2u
 #define EYE_FATE_OCCLUDED 3u
-#define EYE_FATE_DRAWN 4u  // a flag: may be set with occluded, for one that last frame's visibility had drawn
-#define EYE_FATE_BITS 3
+#define EYE_FATE_WHY 3u  // mask of the above
+#define EYE_FATE_EARLY \
+  4u                      // drawn by the early pass: what it then proves to be, occluded perhaps, is for the next frame
+#define EYE_FATE_LATE 8u  // drawn by the late pass
+#define EYE_FATE_BITS 4
 
 // A group of the culling shader works on so many clusters, one of the depth map's on so many texels each way.
 #define EYE_CULL_GROUP 64

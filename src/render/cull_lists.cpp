@@ -106,8 +106,8 @@ CullCounts CullLists::counts() const {
   CullCounts counts;
   counts.considered = candidateCount_;
   for (const uint32_t fate : fates_.as<const uint32_t>().first(candidateCount_)) {
-    const uint32_t triangles = fate >> EYE_FATE_BITS, why = fate & 3u;
-    const bool drawn = (fate & EYE_FATE_DRAWN) != 0;
+    const uint32_t triangles = fate >> EYE_FATE_BITS, why = fate & EYE_FATE_WHY;
+    const bool drawn = (fate & (EYE_FATE_EARLY | EYE_FATE_LATE)) != 0;
     counts.drawn += drawn;
     if (drawn) counts.trianglesDrawn += triangles;
     if (drawn) continue;

@@ -67,12 +67,29 @@ CullMirror mirrorOf(const CullReadBack& gpu) {
     } else if (isOccluded(gpu.params, mirror.pyramid, mapRectOf(gpu.params, clip))) {
       fate = EYE_FATE_OCCLUDED;
     }
-    const bool wasDrawn = gpu.early[i].instanceCount != 0, isDrawn = fate == EYE_FATE_VISIBLE && !wasDrawn;
-    mirror.fates.push_back(fate | (wasDrawn || isDrawn ? EYE_FATE_DRAWN : 0u) |
-                           (cluster.indexCount / 3u << EYE_FATE_BITS));
-    mirror.late.push_back({cluster.indexCount, isDrawn ? 1u : 0u, cluster.firstIndex, chunk.vertexOffset, chunk.draw});
+    const uint32_t early = gpu.fates[i] & EYE_FATE_EARLY;
+    const uint32_t late = fate == EYE_FATE_VISIBLE && early == 0 ? EYE_FATE_LATE : 0u;
+    mirror.fates.push_back(fate | early | late | (cluster.indexCount / 3u << EYE_FATE_BITS));
   }
   return mirror;
+}
+
+std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu, const std::vector<DrawCommand>& commands) {
+  std::vector<uint32_t> times(gpu.candidates.size());
+  for (size_t i = 0; i < commands.size(); ++i) {
+    if (commands[i].instanceCount == 0) continue;
+    uint32_t next = commands[i].firstIndex, left = commands[i].indexCount;
+    for (size_t k = i; left > 0; ++k) {
+      const ClusterRecord& cluster = gpu.clusters.at(gpu.candidates.at(k).cluster);
+      if (cluster.firstIndex != next || cluster.indexCount > left ||
+          gpu.chunks[gpu.candidates[k].chunk].draw != commands[i].firstInstance)
+        return {};
+      ++times[k];
+      next += cluster.indexCount;
+      left -= cluster.indexCount;
+    }
+  }
+  return times;
 }
 
 }  // namespace eye::test

@@ -8,10 +8,12 @@ namespace eye::test {
 
 struct CullMirror {
   std::vector<float> pyramid;
-  std::vector<uint32_t> fates;  // as the GPU's, with EYE_FATE_DRAWN
-  std::vector<shader::DrawCommand> late;
+  std::vector<uint32_t> fates;  // EYE_FATE_EARLY is the GPU's word: it depends on the frame before
 };
-// Takes everything but `pyramid`, `fates` and `late` from `gpu`.
 CullMirror mirrorOf(const CullReadBack& gpu);
+
+// How often the commands draw each candidate's cluster. Empty where a command's indices are not whole clusters of one
+// chunk behind one another, from its own candidate on.
+std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu, const std::vector<shader::DrawCommand>& commands);
 
 }  // namespace eye::test
