@@ -1,0 +1,87 @@
+// Off-axis frusta and the two horizon tests, end to end: what the program draws with them is the same picture.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "system/program.h"
+#include "system/rasters.h"
+
+namespace eye::truth {
+namespace {
+
+constexpr int kHeight = 200, kChannelWidth = 160, kChannels = 3;
+
+RasterImage draw(const std::string& database, const std::string& name, int widthPx, const std::string& pose,
+                 const std::vector<std::string>& more) {
+  const std::string map = testFile(name + ".tif");
+  std::vector<std::string> words{
+      "--headless",     "--offline", "--terrain",   database,
+      "--pose",         pose,        "--size",      std::to_string(widthPx) + "x" + std::to_string(kHeight),
+      "--distance-map", map,         "--log-level", "error"};
+  words.insert(words.end(), more.begin(), more.end());
+  const ProgramRun run = runProgram("eyepoint", words);
+  INFO(joined(words) << ": " << run.err);
+  REQUIRE(run.exitCode == 0);
+  RasterImage image = readRaster(map);
+  REQUIRE(image.widthPx == widthPx);
+  REQUIRE(image.heightPx == kHeight);
+  return image;
+}
+
+std::string frustum(double tanLeft, double tanRight, double tanUp) {
+  const auto degrees = [](double tangent) { return std::to_string(std::atan(tangent) * 57.29577951308232); };
+  return "--frustum=" + degrees(tanLeft) + "," + degrees(tanRight) + "," + degrees(-tanUp) + "," + degrees(tanUp);
+}
+
+}  // namespace
+
+TEST_CASE("channels: three frusta side by side make the wide picture") {
+  const std::string database = carpathiaDatabase();
+  if (database.empty()) return;
+  const std::string pose = "49.25,20.1,2600,180,-5,7";
+  const double tanUp = static_cast<double>(kHeight) / (kChannels * kChannelWidth);  // square pixels
+  const RasterImage wide = draw(database, "channels_wide", kChannels * kChannelWidth, pose, {frustum(-1, 1, tanUp)});
+  int sky = 0, otherSky = 0, otherDistance = 0;
+  for (int channel = 0; channel < kChannels; ++channel) {
+    const double tanLeft = -1 + channel * 2.0 / kChannels;
+    const RasterImage part =
+        draw(database, "channels_part", kChannelWidth, pose, {frustum(tanLeft, tanLeft + 2.0 / kChannels, tanUp)});
+    for (int row = 0; row < kHeight; ++row) {
+      for (int column = 0; column < kChannelWidth; ++column) {
+        const float a = wide.at(0, row, channel * kChannelWidth + column), b = part.at(0, row, column);
+        sky += std::isnan(a);
+        otherSky += std::isnan(a) != std::isnan(b);
+        otherDistance += std::abs(a - b) > 2e-3f * a;
+      }
+    }
+  }
+  // Edges fall to one pixel or the next by the rounding of their corners in the one grid and in the other.
+  constexpr int kPixels = kHeight * kChannelWidth * kChannels;
+  CAPTURE(sky, otherSky, otherDistance);
+  CHECK(sky > kPixels / 20);
+  CHECK(sky < kPixels * 19 / 20);
+  CHECK(otherSky < kPixels / 1000);
+  CHECK(otherDistance < kPixels / 200);
+}
+
+TEST_CASE("horizon: both tests and none give the same picture") {
+  const std::string database = carpathiaDatabase();
+  if (database.empty()) return;
+  for (const char* pose : {"49.25,20.1,2600,180,0,0", "49.25,20.1,400000,200,-60,0", "31.5,35.4,-400,90,0,0"}) {
+    const auto mapOf = [&](const std::vector<std::string>& more) {
+      return draw(database, "horizon", kChannelWidth, pose, more).values;
+    };
+    const std::vector<float> ellipsoid = mapOf({"--horizon", "ellipsoid"}), paper = mapOf({"--horizon", "paper"});
+    const std::vector<float> everything = mapOf({"--culling", "none", "--cache-gpu", "1024", "--cache-ram", "1024"});
+    const auto differ = [&](const std::vector<float>& other) {
+      int count = 0;
+      for (size_t i = 0; i < ellipsoid.size(); ++i)
+        count += !(ellipsoid[i] == other[i] || (std::isnan(ellipsoid[i]) && std::isnan(other[i])));
+      return count;
+    };
+    INFO(pose);
+    CHECK(differ(paper) == 0);
+    CHECK(differ(everything) == 0);
+  }
+}
+
+}  // namespace eye::truth
