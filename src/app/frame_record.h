@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "control/selector_input.h"
 #include "geo/pose.h"
 #include "link/state_source.h"
 #include "paging/lod_select.h"
@@ -26,6 +27,7 @@ struct FrameRecord {
   SelectionCounts selection;
   CullCounts clusters;                   // of the occlusion pass, where it ran
   std::optional<glm::ivec2> depthMapPx;  // its depth map; nothing: it did not run
+  std::optional<Decision> decision;      // the selector's, where it was asked
   PagingCounts paging;
   HostCounts host;
   double hostAgeMs = -1;  // from the newest packet's arrival to the frame's completion; negative: no packet yet

@@ -81,6 +81,10 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   if (!sources) return tl::unexpected(sources.error());
   made->sources_ = std::move(*sources);
 
+  Result<DepthMapControl> depthMap = DepthMapControl::create(options);
+  if (!depthMap) return tl::unexpected(depthMap.error());
+  made->depthMap_ = std::move(*depthMap);
+
   const bool embedded = options.terrain.empty();
   const std::string terrain = embedded ? defaultTerrainPath() : options.terrain;
   std::error_code failed;
@@ -177,15 +181,14 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
                     readDepth > drawn_->readDepth;
   FrameRecord record;
   if (draw) {
-    std::optional<glm::ivec2> depthMapPx;
-    if (options_.culling == CullingMode::dynamic && options_.depthMap == DepthMapMode::fixed)
-      depthMapPx = options_.depthMapPx;
+    record.depthMapPx = depthMap_.choose(pose_, pager_->cache(), selection_);
+    record.decision = depthMap_.decision();
     makeDrawList(pager_->cache(), selection_, draws_);
     FrameInput input{.view = view_,
                      .draws = draws_,
                      .lighting = lighting,
                      .background = options_.background,
-                     .depthMapPx = depthMapPx,
+                     .depthMapPx = record.depthMapPx,
                      .readColour = readColour,
                      .readDepth = readDepth,
                      .overlay = {}};
@@ -194,7 +197,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
     if (!output) return tl::unexpected(output.error());
     output_ = *output;
     record.clusters = output_.clusters;
-    record.depthMapPx = depthMapPx;
+    depthMap_.learn(output_);
     const PagingCounts paging = pager_->counts();
     drawn_ = Drawn{view_, lighting, {}, paging.loaded, paging.evicted, readColour, readDepth};
     for (const DrawnChunk& drawn : selection_.draws) drawn_->nodes.push_back(drawn.node);

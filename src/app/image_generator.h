@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/depth_map_control.h"
 #include "app/frame_record.h"
 #include "app/options.h"
 #include "app/overlay.h"
@@ -56,6 +57,7 @@ class ImageGenerator {
   Sources sources_;
   std::unique_ptr<Renderer> renderer_;
   std::unique_ptr<Pager> pager_;  // after the renderer: it gives its chunks back to it
+  DepthMapControl depthMap_;
   Overlay overlay_;
 
   uint64_t number_ = 0;

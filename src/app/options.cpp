@@ -227,6 +227,16 @@ void addQuality(CLI::App& app, Options& o) {
       ->type_name("auto/off/WxH")
       ->group(group);
   app.add_option_function<std::string>(
+         "--selector",
+         [&o](const std::string& t) { o.selectorMode = t == "paper" ? SelectorMode::paper : SelectorMode::adaptive; },
+         "How auto chooses: adaptive (default) by what pays, paper by altitude and pitch")
+      ->type_name("adaptive/paper")
+      ->check(CLI::IsMember({"adaptive", "paper"}))
+      ->group(group);
+  app.add_option("--selector-rules", o.selectorRules, "Rules for auto, such as config/selector.toml; default built in")
+      ->type_name("FILE.toml")
+      ->group(group);
+  app.add_option_function<std::string>(
          "--horizon",
          [&o](const std::string& t) { o.horizon = t == "paper" ? HorizonTest::paper : HorizonTest::ellipsoid; },
          "What hides chunks below the horizon: ellipsoid (default), or paper: a sphere, for comparison")

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "base/error.h"
+#include "control/selector_rules.h"
 #include "paging/lod_select.h"
 
 namespace eye {
@@ -42,6 +43,8 @@ struct Options {
   CullingMode culling = CullingMode::dynamic;
   DepthMapMode depthMap = DepthMapMode::automatic;  // read with dynamic culling alone
   glm::ivec2 depthMapPx{0, 0};                      // with DepthMapMode::fixed
+  std::string selectorRules;                        // empty: the built-in ones
+  std::optional<SelectorMode> selectorMode;         // instead of the rules' own
   HorizonTest horizon = HorizonTest::ellipsoid;
   uint64_t cacheRamMiB = 96, cacheGpuMiB = 160;
 

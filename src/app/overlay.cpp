@@ -43,6 +43,11 @@ void Overlay::draw(const std::string& device, const std::string& source) const {
   line("triangles", "%.0f in %.0f draws", static_cast<double>(r.triangles), static_cast<double>(r.draws));
   line("chunks", "%.0f drawn, %.0f off screen, %.0f below horizon", r.selection.drawn, r.selection.frustumCulled,
        r.selection.horizonCulled);
+  if (r.depthMapPx) {
+    line("depth map", "%.0f x %.0f", r.depthMapPx->x, r.depthMapPx->y);
+    line("clusters", "%.0f drawn, %.0f hidden, %.0f off screen", r.clusters.drawn, r.clusters.occluded,
+         r.clusters.outside);
+  }
   line("paging", "%.0f resident, %.0f missing, %.1f MiB read", static_cast<double>(r.paging.resident),
        r.selection.missing, static_cast<double>(r.paging.bytesRead) / kMiB);
   line("memory", "GPU %.0f MiB, RAM %.0f MiB", static_cast<double>(r.paging.gpuBytes) / kMiB,

@@ -17,6 +17,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kFrameBudgetMs = 1000.0 / 60.0;
 
+Json membershipOf(const std::optional<Decision>& decision) {
+  if (!decision) return {{"altitude", nullptr}, {"pitch", nullptr}, {"sum", nullptr}};
+  return {{"altitude", decision->altitudeMembership}, {"pitch", decision->pitchMembership}, {"sum", decision->sum}};
+}
+
 Json jsonOf(const FrameRecord& r) {
   Json passes = Json::object();
   for (const PassTime& pass : r.passes) passes[pass.name] = pass.ms;
@@ -49,7 +54,7 @@ Json jsonOf(const FrameRecord& r) {
               {"chunks", chunks},
               {"clusters", clusters},
               {"depth_map", r.depthMapPx ? fmt::format("{}x{}", r.depthMapPx->x, r.depthMapPx->y) : "off"},
-              {"membership", {{"altitude", nullptr}, {"pitch", nullptr}, {"sum", nullptr}}},
+              {"membership", membershipOf(r.decision)},
               {"paging",
                {{"requested", r.paging.requested},
                 {"loaded", r.paging.loaded},

@@ -1,0 +1,43 @@
+// Which depth map each frame's occlusion culling gets, if any: what the options say, or the fuzzy selector from the
+// eye's surroundings and the last frame's measurements. Owner thread: render.
+#pragma once
+
+#include <optional>
+
+#include "app/options.h"
+#include "control/fuzzy_selector.h"
+#include "geo/pose.h"
+#include "paging/lod_select.h"
+#include "render/renderer.h"
+
+namespace eye {
+
+// Terrain about the eye, from what is resident.
+struct Surroundings {
+  double heightAboveGroundM = 0;
+  double reliefM = 0;  // highest minus lowest terrain among the chunks in view and near
+};
+Surroundings surroundingsOf(const TerrainCache& cache, const Selection& selection, const Geodetic& eye);
+
+class DepthMapControl {
+ public:
+  // usage: a rules file that does not hold (says where).
+  static Result<DepthMapControl> create(const Options& options);
+
+  // Before a frame that is drawn: the size of its depth map, nothing for none.
+  std::optional<glm::ivec2> choose(const Pose& pose, const TerrainCache& cache, const Selection& selection);
+  // After it.
+  void learn(const FrameOutput& output);
+  // The selector's; nothing where the options decide.
+  const std::optional<Decision>& decision() const { return decision_; }
+
+ private:
+  CullingMode culling_ = CullingMode::dynamic;
+  DepthMapMode mode_ = DepthMapMode::automatic;
+  glm::ivec2 fixedPx_{0, 0};
+  FuzzySelector selector_;
+  SelectorInput measured_;  // of the last frame
+  std::optional<Decision> decision_;
+};
+
+}  // namespace eye
