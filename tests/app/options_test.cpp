@@ -43,7 +43,7 @@ TEST_CASE("the command line sets what it says") {
   CHECK(std::isinf(*o.rateHz));
   CHECK_FALSE(o.vsync);
   CHECK(o.ssePx == 0.5);
-  CHECK(o.culling == CullingScheme::none);
+  CHECK(o.culling == CullingMode::none);
   CHECK(o.horizon == HorizonTest::paper);
   CHECK(*o.background == glm::vec3(0, 0.5f, 1));
   CHECK(*o.frames == 10);
