@@ -10,13 +10,15 @@ float depthAt(ivec2 texel, int level) {
   return pyramid[params.levelOffset[level] + texel.y * levelSize(params.mapPx, level).x + texel.x];
 }
 
-// Behind the farthest depth of the rectangle's footprint: its four corners at a level where it spans two texels.
+// Behind the farthest depth of the rectangle's footprint.
 bool isOccluded(MapRect rect) {
   if (!rect.isKnown) return false;
   int level = levelOf(params, rect);
   ivec2 low = texelAt(rect.low, params.mapPx, level), high = texelAt(rect.high, params.mapPx, level);
-  float farthest = min(min(depthAt(low, level), depthAt(ivec2(high.x, low.y), level)),
-                       min(depthAt(ivec2(low.x, high.y), level), depthAt(high, level)));
+  float farthest = 1.0;
+  for (int y = low.y; y <= high.y; ++y) {
+    for (int x = low.x; x <= high.x; ++x) farthest = min(farthest, depthAt(ivec2(x, y), level));
+  }
   return rect.nearest < farthest;
 }
 

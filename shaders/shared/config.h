@@ -40,6 +40,9 @@
 // 2^13 texels: the largest depth map.
 #define EYE_MAX_DEPTH_LEVELS 14
 
+// A cluster's rectangle is tested against so many texels of the pyramid at most.
+#define EYE_RECT_TEXELS 256
+
 // Added to a cone's cutoff, a sine: see isBackFacing.
 #define EYE_CONE_MARGIN 0.02f
 // Margins of the depth that a box may reach: a share of its extent along the view, and of the depth; see mapRectOf.

@@ -146,15 +146,6 @@ EYE_FUNCTION MapRect mapRectOf(CullParams params, ClipBox b) {
   return rect;
 }
 
-// The finest level at which the rectangle spans at most two texels each way: 2^level >= its extent, or the coarsest,
-// which has one texel: sizes are rounded down, so it comes before 2^level does.
-EYE_FUNCTION int levelOf(CullParams params, MapRect rect) {
-  int extent = max(rect.high.x - rect.low.x, rect.high.y - rect.low.y);
-  int level = 0;
-  while ((1 << level) < extent) ++level;
-  return min(level, params.levelCount - 1);
-}
-
 // Levels halve, rounding down; the last texel of a row or column takes in what is left over.
 EYE_FUNCTION ivec2 levelSize(ivec2 mapPx, int level) {
   return ivec2(max(1, mapPx.x >> level), max(1, mapPx.y >> level));
@@ -163,6 +154,20 @@ EYE_FUNCTION ivec2 texelAt(ivec2 finest, ivec2 mapPx, int level) {
   ivec2 size = levelSize(mapPx, level);
   return ivec2(min(finest.x >> level, size.x - 1), min(finest.y >> level, size.y - 1));
 }
+// Texels of a level that the rectangle touches.
+EYE_FUNCTION int texelsOf(CullParams params, MapRect rect, int level) {
+  ivec2 extent = texelAt(rect.high, params.mapPx, level) - texelAt(rect.low, params.mapPx, level);
+  return (extent.x + 1) * (extent.y + 1);
+}
+
+// The finest level at which they are not too many. Terrain seen from low down is wide and flat, and its rectangles end
+// where the sky begins: with the usual four texels, of 56 clusters hidden in a view over the Tatra none was found.
+EYE_FUNCTION int levelOf(CullParams params, MapRect rect) {
+  int level = 0;
+  while (texelsOf(params, rect, level) > EYE_RECT_TEXELS) ++level;
+  return level;
+}
+
 // First and last texel of the finer level that a texel covers, along one axis.
 EYE_FUNCTION ivec2 finerSpan(int texel, int size, int finerSize) {
   return ivec2(min(2 * texel, finerSize - 1), texel == size - 1 ? finerSize - 1 : 2 * texel + 1);

@@ -35,7 +35,6 @@ std::vector<float> pyramidOf(const CullReadBack& gpu) {
   return pyramid;
 }
 
-// Against every texel of the finest level that the rectangle touches at the level chosen: no shortcut.
 bool isOccluded(const CullParams& p, const std::vector<float>& pyramid, const MapRect& rect) {
   if (!rect.isKnown) return false;
   const int level = levelOf(p, rect);
