@@ -51,8 +51,13 @@ Result<Ffmpeg> startFfmpeg(const RecorderOptions& options) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  // In a process group of its own: Ctrl-C ends the flight, and the film is then finished like any other.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   Ffmpeg ffmpeg;
-  const int failed = posix_spawnp(&ffmpeg.pid, "ffmpeg", &actions, nullptr, arguments.data(), environ);
+  const int failed = posix_spawnp(&ffmpeg.pid, "ffmpeg", &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[0]);
   if (failed != 0) {
@@ -76,37 +81,44 @@ bool writeAll(int descriptor, std::span<const uint8_t> bytes) {
   return true;
 }
 
+struct Frame {
+  std::vector<uint8_t> rgba;
+  uint64_t times = 1;  // in the film
+};
+
 }  // namespace
 
 struct Recorder::Impl {
   RecorderOptions options;
   Ffmpeg ffmpeg;
-  std::mutex mutex;  // guards what follows; the thread owns all else
+  uint64_t filmFrames = 0;  // handed over so far
+  std::mutex mutex;         // guards what follows; the thread owns all else
   std::condition_variable changed;
-  std::deque<std::vector<uint8_t>> queue;
+  std::deque<Frame> queue;
   std::vector<std::vector<uint8_t>> spare;  // frames' memory, used again
   bool closing = false;
   std::optional<Error> error;
   std::thread thread;
 
   void run();
-  Result<void> writeFrame(const std::vector<uint8_t>& rgba, uint64_t number);
+  Result<void> writeFrame(const Frame& frame, uint64_t number);
 };
 
-Result<void> Recorder::Impl::writeFrame(const std::vector<uint8_t>& rgba, uint64_t number) {
+Result<void> Recorder::Impl::writeFrame(const Frame& frame, uint64_t number) {
   const TraceScope scope("record frame");
-  if (ffmpeg.pipe >= 0 && !writeAll(ffmpeg.pipe, rgba))
-    return fail(ErrorKind::io, fmt::format("{}: ffmpeg stopped taking frames at frame {} ({}); its message is above",
-                                           options.film, number, std::strerror(errno)));
+  for (uint64_t i = 0; ffmpeg.pipe >= 0 && i < frame.times; ++i)
+    if (!writeAll(ffmpeg.pipe, frame.rgba))
+      return fail(ErrorKind::io, fmt::format("{}: ffmpeg stopped taking frames at frame {} ({}); its message is above",
+                                             options.film, number, std::strerror(errno)));
   if (options.folder.empty()) return {};
   const std::string path = fmt::format("{}/frame{:06}.png", options.folder, number);
-  return writePng(path, rgba, options.widthPx, options.heightPx);
+  return writePng(path, frame.rgba, options.widthPx, options.heightPx);
 }
 
 void Recorder::Impl::run() {
   nameThread("recorder");
   for (uint64_t number = 0;; ++number) {
-    std::vector<uint8_t> frame;
+    Frame frame;
     {
       std::unique_lock lock(mutex);
       changed.wait(lock, [&] { return closing || !queue.empty(); });
@@ -117,7 +129,7 @@ void Recorder::Impl::run() {
     const Result<void> written = writeFrame(frame, number);
     const std::lock_guard lock(mutex);
     if (!written) error = written.error();
-    spare.push_back(std::move(frame));
+    spare.push_back(std::move(frame.rgba));
     changed.notify_all();
     if (error) return;
   }
@@ -148,19 +160,22 @@ Result<std::unique_ptr<Recorder>> Recorder::create(const RecorderOptions& option
   return std::unique_ptr<Recorder>(new Recorder(std::move(impl)));
 }
 
-Result<void> Recorder::add(std::span<const uint8_t> rgba, int widthPx, int heightPx) {
+Result<void> Recorder::add(std::span<const uint8_t> rgba, int widthPx, int heightPx, double timeS) {
   if (widthPx != impl_->options.widthPx || heightPx != impl_->options.heightPx)
     return fail(ErrorKind::unsupported,
                 "the window changed its size while recording; record with --headless, or leave its size");
   std::unique_lock lock(impl_->mutex);
   impl_->changed.wait(lock, [&] { return impl_->error || impl_->queue.size() < kMaxQueuedFrames; });
   if (impl_->error) return tl::unexpected(*impl_->error);
-  std::vector<uint8_t> frame;
+  Frame frame;
   if (!impl_->spare.empty()) {
-    frame = std::move(impl_->spare.back());
+    frame.rgba = std::move(impl_->spare.back());
     impl_->spare.pop_back();
   }
-  frame.assign(rgba.begin(), rgba.end());
+  frame.rgba.assign(rgba.begin(), rgba.end());
+  const auto due = static_cast<uint64_t>(std::max(0.0, timeS * impl_->options.rateHz)) + 1;  // film frames by now
+  frame.times = due > impl_->filmFrames ? due - impl_->filmFrames : 1;
+  impl_->filmFrames += frame.times;
   impl_->queue.push_back(std::move(frame));
   impl_->changed.notify_all();
   return {};

@@ -23,9 +23,10 @@ class Recorder {
   // unsupported where ffmpeg is not installed.
   static Result<std::unique_ptr<Recorder>> create(const RecorderOptions& options);
   ~Recorder();
-  // Copies the frame; waits where the writer is more than a few frames behind, so that no frame is lost and memory is
-  // bounded. A failure of an earlier frame shows here.
-  Result<void> add(std::span<const uint8_t> rgba, int widthPx, int heightPx);
+  // Copies the frame of the flight's clock `timeS`; waits where the writer is more than a few frames behind, so that no
+  // frame is lost and memory is bounded. A film shows it again where frames came slower than the film's rate, so that
+  // the film is as long as the flight. A failure of an earlier frame shows here.
+  Result<void> add(std::span<const uint8_t> rgba, int widthPx, int heightPx, double timeS);
   Result<void> finish();
 
  private:

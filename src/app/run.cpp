@@ -181,7 +181,8 @@ Result<void> run(const Options& given, int64_t startedNs) {
     if (stats)
       if (const Result<void> written = stats->write(*record); !written) return written;
     if (*recorder)
-      if (const Result<void> added = (*recorder)->add(generator.picture(), generator.widthPx(), generator.heightPx());
+      if (const Result<void> added =
+              (*recorder)->add(generator.picture(), generator.widthPx(), generator.heightPx(), timeS);
           !added)
         return added;
     if (last || stopRequested != 0 || (limits.endWithSource && generator.sourceFinished())) break;
