@@ -108,10 +108,22 @@ Result<std::unique_ptr<Recorder>> startRecorder(const Options& options, ImageGen
                       .rateHz = std::isfinite(rateHz) && !options.offline ? rateHz : kOfflineRateHz});
 }
 
-void reportRun(const RunSummary& summary, double startupMs) {
+void reportRun(const RunSummary& summary, double startupMs, const Options& options) {
   const TimeSummary times = summarize(summary.frameTimesMs());
   spdlog::info("{} frames, {} drawn; frame ms median {:.2f}, p99 {:.2f}, max {:.2f}; first frame after {:.0f} ms",
                summary.frames(), summary.frameTimesMs().size(), times.median, times.p99, times.max, startupMs);
+  if (!options.offline || summary.missingChunkFrames() == 0) return;
+  const PagingCounts& paging = summary.paging();
+  const std::string cure =
+      paging.refused > 0 ? fmt::format(
+                               "--cache-gpu {} is too small; give {}, and again twice as much until this line "
+                               "is gone, or a greater --sse",
+                               options.cacheGpuMiB, 2 * options.cacheGpuMiB)
+      : paging.damaged > 0
+          ? std::string("the database is damaged; eyepoint-bake verify tells where")
+          : fmt::format("--cache-ram {} is too small; give {}", options.cacheRamMiB, 2 * options.cacheRamMiB);
+  spdlog::warn("{} of {} frames are coarser than --sse {} asks, with up to {} chunks missing: {}",
+               summary.missingChunkFrames(), summary.frames(), options.ssePx, summary.mostMissing(), cure);
 }
 
 }  // namespace
@@ -190,7 +202,7 @@ Result<void> run(const Options& given, int64_t startedNs) {
     pace.wait();
   }
 
-  reportRun(summary, startupMs);
+  reportRun(summary, startupMs, options);
   if (const Result<void> written = writeLastFrame(options, generator); !written) return written;
   if (*recorder)
     if (const Result<void> finished = (*recorder)->finish(); !finished) return finished;

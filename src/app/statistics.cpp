@@ -121,11 +121,12 @@ TimeSummary summarize(std::vector<double> values) {
 
 void RunSummary::add(const FrameRecord& record) {
   ++frames_;
-  bytesRead_ = record.paging.bytesRead;
+  paging_ = record.paging;
   if (!record.drawn) return;
   frameMs_.push_back(record.frameMs);
   overBudget_ += record.frameMs > kFrameBudgetMs ? 1 : 0;
   missingChunkFrames_ += record.selection.missing > 0 ? 1 : 0;
+  mostMissing_ = std::max(mostMissing_, record.selection.missing);
   triangles_ += static_cast<double>(record.triangles);
   vertices_ += static_cast<double>(record.vertices);
   cpuMs_ += record.cpuMs;
@@ -146,7 +147,7 @@ Result<void> RunSummary::write(const std::string& path, const std::string& devic
       {"triangles_mean", triangles_ / drawn},
       {"vertices_mean", vertices_ / drawn},
       {"missing_chunk_frames", missingChunkFrames_},
-      {"bytes_read", bytesRead_},
+      {"bytes_read", paging_.bytesRead},
       {"peak_rss_bytes", peakRssBytes()},
       {"device", device},
       {"startup_ms", startupMs},

@@ -37,12 +37,17 @@ class RunSummary {
   void add(const FrameRecord& record);
   uint64_t frames() const { return frames_; }
   const std::vector<double>& frameTimesMs() const { return frameMs_; }
+  uint64_t missingChunkFrames() const { return missingChunkFrames_; }
+  uint32_t mostMissing() const { return mostMissing_; }   // chunks in one frame
+  const PagingCounts& paging() const { return paging_; }  // of the last frame
   Result<void> write(const std::string& path, const std::string& device, double startupMs,
                      const std::string& settings) const;
 
  private:
   std::vector<double> frameMs_;
-  uint64_t frames_ = 0, overBudget_ = 0, missingChunkFrames_ = 0, bytesRead_ = 0;
+  uint64_t frames_ = 0, overBudget_ = 0, missingChunkFrames_ = 0;
+  uint32_t mostMissing_ = 0;
+  PagingCounts paging_;
   double triangles_ = 0, vertices_ = 0, cpuMs_ = 0;
 };
 

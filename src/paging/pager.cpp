@@ -152,7 +152,9 @@ bool Pager::Impl::takeIn(const ChunkGroup& group) {
       counts.loaded += uploaded->size();
       return true;
     }
-    if (!evictOne()) return false;
+    if (evictOne()) continue;
+    ++counts.refused;
+    return false;
   }
 }
 

@@ -17,9 +17,10 @@ struct PagerOptions {
   bool wait = false;  // --offline: exchange() returns when nothing that is wanted is missing (the caller selects again)
 };
 
-struct PagingCounts {  // since the start, but for the first two and last two
+struct PagingCounts {  // since the start, but for the first three
   uint64_t resident = 0, ramBytes = 0, gpuBytes = 0;
   uint64_t requested = 0, loaded = 0, evicted = 0, bytesRead = 0, damaged = 0;
+  uint64_t refused = 0;  // times that a group was loaded and the GPU's budget had no room for it
 };
 
 class Pager {
