@@ -177,9 +177,11 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   select();
 
   const bool overlay = renderer_->overlayWanted() != options_.overlay;  // F1 switches what the option says
-  const bool draw = options_.redrawAlways || overlay || !sameAsLast(lighting) || readColour > drawn_->readColour ||
-                    readDepth > drawn_->readDepth;
+  const bool seen = !renderer_->minimised() || readColour || readDepth;
+  const bool draw = seen && (options_.redrawAlways || overlay || !sameAsLast(lighting) ||
+                             readColour > drawn_->readColour || readDepth > drawn_->readDepth);
   FrameRecord record;
+  int64_t endedNs = 0;
   if (draw) {
     record.depthMapPx = depthMap_.choose(pose_, pager_->cache(), selection_);
     record.decision = depthMap_.decision();
@@ -198,14 +200,15 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
     output_ = *output;
     record.clusters = output_.clusters;
     depthMap_.learn(output_);
+    endedNs = output_.completedNs;
     const PagingCounts paging = pager_->counts();
     drawn_ = Drawn{view_, lighting, {}, paging.loaded, paging.evicted, readColour, readDepth};
     for (const DrawnChunk& drawn : selection_.draws) drawn_->nodes.push_back(drawn.node);
   } else {
+    endedNs = monotonicNs();
     renderer_->presentAgain();
   }
 
-  const int64_t endedNs = monotonicNs();
   record.frame = number_++;
   record.timeS = timeS;
   record.pose = pose_;

@@ -25,6 +25,7 @@ namespace eye {
 namespace {
 
 constexpr double kOfflineRateHz = 60;
+constexpr double kDisplayRateHz = 60;  // a window's, unless told otherwise: it never spins
 
 volatile std::sig_atomic_t stopRequested = 0;
 void requestStop(int) {
@@ -165,13 +166,12 @@ Result<void> run(const Options& given, int64_t startedNs) {
   ImageGenerator& generator = **created;
 
   const double defaultRateHz =
-      generator.sourceIsFixed() || options.offline ? std::numeric_limits<double>::infinity() : 60.0;
-  const double rateHz = options.rateHz.value_or(defaultRateHz);
+      generator.sourceIsFixed() || options.offline ? std::numeric_limits<double>::infinity() : kDisplayRateHz;
+  const double rateHz = options.rateHz.value_or(options.headless ? defaultRateHz : kDisplayRateHz);
   Result<std::unique_ptr<Recorder>> recorder = startRecorder(options, generator, rateHz);
   if (!recorder) return tl::unexpected(recorder.error());
-  const bool presentPaces = !options.headless && options.vsync && generator.renderer().device().type != "CPU";
-  Pace pace(presentPaces ? std::numeric_limits<double>::infinity()
-                         : (options.headless || std::isfinite(rateHz) ? rateHz : 60.0));  // a window never spins
+  const bool displayPaces = !options.headless && options.vsync && generator.renderer().device().type != "CPU";
+  Pace pace(displayPaces ? std::numeric_limits<double>::infinity() : rateHz), unseenPace(kDisplayRateHz);
 
   const Limits limits = limitsOf(options);
   const bool wantsPicture = !options.screenshot.empty(), wantsDepth = !options.distanceMap.empty();
@@ -179,6 +179,8 @@ Result<void> run(const Options& given, int64_t startedNs) {
   double startupMs = 0;
   const int64_t beganNs = monotonicNs();
   for (uint64_t number = 0;; ++number) {
+    const Result<bool> shown = generator.renderer().awaitDisplay();
+    if (!shown) return tl::unexpected(shown.error());
     const double timeS = options.offline ? static_cast<double>(number) / kOfflineRateHz
                                          : static_cast<double>(monotonicNs() - beganNs) * 1e-9;
     if (timeS >= limits.durationS && number > 0) break;
@@ -199,7 +201,10 @@ Result<void> run(const Options& given, int64_t startedNs) {
         return added;
     if (last || stopRequested != 0 || (limits.endWithSource && generator.sourceFinished())) break;
     if (!options.headless && !generator.renderer().pollWindow()) break;
-    pace.wait();
+    if (!options.headless && !*shown)
+      unseenPace.wait();
+    else
+      pace.wait();
   }
 
   reportRun(summary, startupMs, options);

@@ -9,6 +9,9 @@
 namespace eye {
 namespace {
 
+// A display that shows nothing of the window may give no image at all; keys and the closing of the window go on.
+constexpr uint64_t kLongestWaitNs = 100'000'000;
+
 vk::raii::SurfaceKHR createSurface(const GpuDevice& gpu, const Window& window) {
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   const VkResult result = glfwCreateWindowSurface(*gpu.instance, window.handle(), nullptr, &surface);
@@ -42,7 +45,7 @@ Swapchain::Swapchain(const GpuDevice& gpu, const Window& window, bool vsync)
     throw vk::InitializationFailedError("the device cannot show pictures in this window");
   }
   format_ = chooseFormat(gpu.physical.getSurfaceFormatsKHR(*surface_));
-  acquired_ = vk::raii::Semaphore(gpu.device, vk::SemaphoreCreateInfo{});
+  free_ = vk::raii::Fence(gpu.device, vk::FenceCreateInfo{});
 }
 
 void Swapchain::recreate(const GpuDevice& gpu) {
@@ -69,12 +72,23 @@ void Swapchain::recreate(const GpuDevice& gpu) {
   swapchain_ = vk::raii::SwapchainKHR(gpu.device, info);
   images_.clear();
   for (const VkImage image : swapchain_.getImages()) images_.emplace_back(image);
-  drawn_.clear();
-  for (size_t i = 0; i < images_.size(); ++i) drawn_.emplace_back(gpu.device, vk::SemaphoreCreateInfo{});
   stale_ = false;
 }
 
-std::optional<uint32_t> Swapchain::acquire(const GpuDevice& gpu) {
+bool Swapchain::acquire(const GpuDevice& gpu) {
+  if (window_.minimised()) return false;
+  if (!held_) {
+    held_ = next(gpu);
+    isFree_ = false;
+  }
+  if (!held_ || isFree_) return isFree_;
+  if (gpu.device.waitForFences(*free_, true, kLongestWaitNs) == vk::Result::eTimeout) return false;
+  gpu.device.resetFences(*free_);
+  isFree_ = true;
+  return true;
+}
+
+std::optional<uint32_t> Swapchain::next(const GpuDevice& gpu) {
   int widthPx = 0, heightPx = 0;
   window_.sizePx(widthPx, heightPx);  // not every display says that an image is out of date
   const vk::Extent2D size(static_cast<uint32_t>(widthPx), static_cast<uint32_t>(heightPx));
@@ -84,7 +98,8 @@ std::optional<uint32_t> Swapchain::acquire(const GpuDevice& gpu) {
     if (stale_) recreate(gpu);
     if (stale_) return std::nullopt;
     try {
-      const auto [result, index] = swapchain_.acquireNextImage(UINT64_MAX, *acquired_);
+      const auto [result, index] = swapchain_.acquireNextImage(kLongestWaitNs, nullptr, *free_);
+      if (result == vk::Result::eTimeout || result == vk::Result::eNotReady) return std::nullopt;
       if (result == vk::Result::eSuboptimalKHR) stale_ = true;  // still shown once more
       return index;
     } catch (const vk::OutOfDateKHRError&) {
@@ -97,9 +112,8 @@ std::optional<uint32_t> Swapchain::acquire(const GpuDevice& gpu) {
 void Swapchain::recordCopy(const vk::raii::CommandBuffer& commands, const GpuImage& picture, uint32_t index) const {
   const vk::Image image = images_.at(index);
   const auto colour = vk::ImageAspectFlagBits::eColor;
-  // Acquisition is awaited in the transfer stage, so the change of layout waits for it too.
   const std::array before{
-      imageBarrier(image, colour, usageDiscarded(vk::PipelineStageFlagBits2::eTransfer), usageCopyTarget())};
+      imageBarrier(image, colour, usageDiscarded(vk::PipelineStageFlagBits2::eNone), usageCopyTarget())};
   recordBarriers(commands, before);
   const auto from = vk::ImageLayout::eTransferSrcOptimal, to = vk::ImageLayout::eTransferDstOptimal;
   const vk::ImageSubresourceLayers layers(colour, 0, 0, 1);
@@ -119,18 +133,14 @@ void Swapchain::recordCopy(const vk::raii::CommandBuffer& commands, const GpuIma
   recordBarriers(commands, after);
 }
 
-void Swapchain::submitAndPresent(const GpuDevice& gpu, vk::CommandBuffer commands, uint32_t index, vk::Fence finished) {
-  const vk::raii::Semaphore& drawn = drawn_.at(index);
-  const vk::CommandBufferSubmitInfo info(commands);
-  const vk::SemaphoreSubmitInfo wait(*acquired_, 0, vk::PipelineStageFlagBits2::eTransfer);
-  const vk::SemaphoreSubmitInfo signal(*drawn, 0, vk::PipelineStageFlagBits2::eAllCommands);
-  vk::SubmitInfo2 submit;
-  submit.setCommandBufferInfos(info).setWaitSemaphoreInfos(wait).setSignalSemaphoreInfos(signal);
-  gpu.queue.submit2(submit, finished);
-  vk::PresentInfoKHR present;
-  present.setSwapchains(*swapchain_).setImageIndices(index).setWaitSemaphores(*drawn);
+void Swapchain::present(const GpuDevice& gpu) {
+  const uint32_t index = held_.value();
+  held_.reset();
+  isFree_ = false;
+  vk::PresentInfoKHR info;
+  info.setSwapchains(*swapchain_).setImageIndices(index);
   try {
-    if (gpu.queue.presentKHR(present) == vk::Result::eSuboptimalKHR) stale_ = true;
+    if (gpu.queue.presentKHR(info) == vk::Result::eSuboptimalKHR) stale_ = true;
   } catch (const vk::OutOfDateKHRError&) {
     stale_ = true;
   }

@@ -15,14 +15,18 @@ class Swapchain {
 
   // What pictures should have, so that a copy suffices.
   vk::Format format() const { return format_.format; }
-  // An image to show next; nothing while the window is minimised or changing.
-  std::optional<uint32_t> acquire(const GpuDevice& gpu);
+  // Waits, a tenth of a second at most, for an image that the display has done with; it is held until it is presented.
+  // False where there is none: the window is minimised, covered or changing.
+  bool acquire(const GpuDevice& gpu);
+  // The image to show next, if acquire found one.
+  std::optional<uint32_t> held() const { return isFree_ ? held_ : std::nullopt; }
   // `picture` is in usageCopySource and stays there.
   void recordCopy(const vk::raii::CommandBuffer& commands, const GpuImage& picture, uint32_t index) const;
-  // Submits the commands that copy into the image, then shows it. `finished` signals when they are done.
-  void submitAndPresent(const GpuDevice& gpu, vk::CommandBuffer commands, uint32_t index, vk::Fence finished);
+  // Shows the image that is held. The commands that copied into it are complete.
+  void present(const GpuDevice& gpu);
 
  private:
+  std::optional<uint32_t> next(const GpuDevice& gpu);
   void recreate(const GpuDevice& gpu);
 
   const Window& window_;
@@ -33,8 +37,9 @@ class Swapchain {
   vk::Extent2D extent_;
   vk::raii::SwapchainKHR swapchain_{nullptr};
   std::vector<vk::Image> images_;
-  vk::raii::Semaphore acquired_{nullptr};
-  std::vector<vk::raii::Semaphore> drawn_;  // one an image: when a presentation is done with it, nobody tells
+  vk::raii::Fence free_{nullptr};  // signals that the display has done with the image that is held
+  std::optional<uint32_t> held_;
+  bool isFree_ = false;  // what free_ has told
 };
 
 }  // namespace eye

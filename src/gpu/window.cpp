@@ -45,6 +45,7 @@ Result<std::unique_ptr<Window>> Window::open(const WindowOptions& options) {
   made->windowedY_ = monitorY;
   glfwSetWindowUserPointer(made->window_, made.get());
   glfwSetKeyCallback(made->window_, &Window::onKey);
+  glfwSetWindowIconifyCallback(made->window_, &Window::onMinimise);
   return made;
 }
 
@@ -60,6 +61,10 @@ bool Window::poll() {
 
 void Window::sizePx(int& widthPx, int& heightPx) const {
   glfwGetFramebufferSize(window_, &widthPx, &heightPx);
+}
+
+void Window::onMinimise(GLFWwindow* handle, int minimised) {
+  static_cast<Window*>(glfwGetWindowUserPointer(handle))->minimised_ = minimised == GLFW_TRUE;
 }
 
 void Window::onKey(GLFWwindow* handle, int key, int, int action, int) {

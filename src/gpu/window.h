@@ -27,18 +27,20 @@ class Window {
 
   bool poll();  // false when the user closed it
   bool overlayWanted() const { return overlayWanted_; }
+  bool minimised() const { return minimised_; }
   // Of what is drawn into; 0 while it is minimised.
   void sizePx(int& widthPx, int& heightPx) const;
   GLFWwindow* handle() const { return window_; }
 
  private:
   Window() = default;
+  static void onMinimise(GLFWwindow* window, int minimised);
   static void onKey(GLFWwindow* window, int key, int scancode, int action, int modifiers);
   void toggleFullscreen();
 
   GLFWwindow* window_ = nullptr;
   int monitor_ = 0;
-  bool overlayWanted_ = false;
+  bool overlayWanted_ = false, minimised_ = false;
   int windowedX_ = 0, windowedY_ = 0, windowedWidth_ = 0, windowedHeight_ = 0;  // where to return from fullscreen
 };
 

@@ -42,7 +42,7 @@ struct Renderer::Impl {
   void record(const FrameInput& input, const DrawCounts& counts, std::optional<uint32_t> shown);
   void recordScene(const FrameInput& input, const DrawCounts& counts);
   void recordCulledScene(const FrameInput& input, const DrawCounts& counts);
-  void submitAndWait(std::optional<uint32_t> shown);
+  void submitAndWait();
   std::span<const uint8_t> pictureRgba();
   void readTimes(FrameOutput& output);
 };
@@ -119,6 +119,17 @@ uint64_t Renderer::validationMessages() const {
   return impl_->gpu->messages.load();
 }
 
+Result<bool> Renderer::awaitDisplay() {
+  if (impl_->swapchain == nullptr) return false;
+  const TraceScope scope("wait for the display");
+  try {
+    return impl_->swapchain->acquire(*impl_->gpu);
+  } catch (const std::exception& e) {
+    return fail(ErrorKind::unsupported,
+                fmt::format("the window takes no more pictures ({}): start again, perhaps with --headless", e.what()));
+  }
+}
+
 Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
   try {
     Impl& impl = *impl_;
@@ -128,9 +139,9 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
     if (input.depthMapPx) impl.prepareCulling(input);
     std::optional<uint32_t> shown;
-    if (impl.swapchain != nullptr) shown = impl.swapchain->acquire(*impl.gpu);
+    if (impl.swapchain != nullptr) shown = impl.swapchain->held();
     impl.record(input, counts, shown);
-    impl.submitAndWait(shown);
+    impl.submitAndWait();
     impl.pools->staged();
     impl.drawn = true;
 
@@ -148,6 +159,8 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     if (input.readColour) output.rgba = impl.pictureRgba();
     if (input.readDepth) output.depth = impl.targets.depthBack.as<const float>();
     impl.readTimes(output);
+    output.completedNs = monotonicNs();
+    if (shown) impl.swapchain->present(*impl.gpu);
     return output;
   } catch (const std::exception& e) {
     return fail(ErrorKind::unsupported,
@@ -236,15 +249,11 @@ void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, s
   commands.end();
 }
 
-void Renderer::Impl::submitAndWait(std::optional<uint32_t> shown) {
-  if (shown) {
-    swapchain->submitAndPresent(*gpu, *commands, *shown, *finished);
-  } else {
-    const vk::CommandBufferSubmitInfo info(*commands);
-    vk::SubmitInfo2 submit;
-    submit.setCommandBufferInfos(info);
-    gpu->queue.submit2(submit, *finished);
-  }
+void Renderer::Impl::submitAndWait() {
+  const vk::CommandBufferSubmitInfo info(*commands);
+  vk::SubmitInfo2 submit;
+  submit.setCommandBufferInfos(info);
+  gpu->queue.submit2(submit, *finished);
   const TraceScope scope("wait for the GPU");
   (void)gpu->device.waitForFences(*finished, true, UINT64_MAX);
   gpu->device.resetFences(*finished);
@@ -303,13 +312,14 @@ CullReadBack Renderer::readCulling() const {
 void Renderer::presentAgain() {
   Impl& impl = *impl_;
   if (impl.swapchain == nullptr || !impl.drawn) return;
+  const std::optional<uint32_t> shown = impl.swapchain->held();
+  if (!shown) return;
   try {
-    const std::optional<uint32_t> shown = impl.swapchain->acquire(*impl.gpu);
-    if (!shown) return;
     impl.commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     impl.swapchain->recordCopy(impl.commands, impl.targets.colour, *shown);
     impl.commands.end();
-    impl.submitAndWait(shown);
+    impl.submitAndWait();
+    impl.swapchain->present(*impl.gpu);
   } catch (const vk::SystemError& e) {
     spdlog::debug("the last picture cannot be shown again: {}", e.what());  // the next drawFrame reports what is wrong
   }
@@ -321,6 +331,10 @@ bool Renderer::pollWindow() {
 
 bool Renderer::overlayWanted() const {
   return impl_->window != nullptr && impl_->window->overlayWanted();
+}
+
+bool Renderer::minimised() const {
+  return impl_->window != nullptr && impl_->window->minimised();
 }
 
 int Renderer::widthPx() const {

@@ -81,6 +81,7 @@ struct FrameOutput {
   std::span<const uint8_t> rgba;                    // width * height * 4, row 0 on top; empty unless asked for
   std::span<const float> depth;                     // reversed-Z: near / z, 0 where nothing is
   int widthPx = 0, heightPx = 0;                    // of this frame: a window may have been resized
+  int64_t completedNs = 0;                          // telemetry's clock: picture complete, not yet with the display
 };
 
 // What the culling passes read and wrote in the last frame, copied from the GPU: for the CPU mirror that checks them.
@@ -106,16 +107,20 @@ class Renderer final : public GpuStore {
   void release(const GpuChunk& chunk) override;
   uint64_t bytesResident() const override;
 
-  // Draws, waits until the frame is complete, presents in a window. An error where the device is lost.
+  // Waits until the window can take a picture (vsync): before a frame, so that it begins with fresh state and contains
+  // no wait. False where the next frame will not be shown: off-screen, or the window is minimised or covered.
+  Result<bool> awaitDisplay();
+  // Draws, waits until the frame is complete, shows it if awaitDisplay() said so. An error where the device is lost.
   Result<FrameOutput> drawFrame(const FrameInput& input);
   // Of the last frame with a depth map. Slow.
   CullReadBack readCulling() const;
-  // Shows the last frame again without drawing it (a window that was covered); nothing off-screen.
+  // Shows the last frame again without drawing it (a window that was covered), as drawFrame does.
   void presentAgain();
 
   // The window: false when the user closed it. Handles F1 (overlay), F11 (fullscreen), Escape.
   bool pollWindow();
   bool overlayWanted() const;
+  bool minimised() const;
   int widthPx() const;
   int heightPx() const;
   const DeviceDescription& device() const;

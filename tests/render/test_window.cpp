@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "render/scene.h"
+#include "telemetry/trace.h"
 
 using namespace eye;
 using namespace eye::test;
@@ -77,15 +78,28 @@ TEST_CASE("a window shows frames through a change of size, validation clean") {
   for (const auto& [width, height] : {std::pair{320, 240}, {320, 240}, {400, 300}}) {
     FrameInput input = lookFrom(pose, width, height);
     input.draws = draws;
+    REQUIRE(renderer->awaitDisplay().value());
+    CHECK(renderer->awaitDisplay().value());  // the image is held: there is nothing to wait for
+    const int64_t beganNs = monotonicNs();
     const auto frame = renderer->drawFrame(input);
     REQUIRE(frame.has_value());
+    CHECK(frame->completedNs > beganNs);
+    CHECK(frame->completedNs < monotonicNs());
     CHECK(frame->widthPx == width);
     CHECK(frame->rgba.size() == static_cast<size_t>(width * height * 4));
     CHECK(frame->rgba[2] > frame->rgba[0]);  // the sky is bluer than red, whatever the window's order of channels
     CHECK(std::string(frame->passes.back().name) == "present");
+    CHECK(renderer->awaitDisplay().value());
     renderer->presentAgain();
     CHECK(renderer->pollWindow());
   }
+  // Without an image of the display a frame is drawn and not shown.
+  FrameInput unseen = lookFrom(pose, 320, 240);
+  unseen.draws = draws;
+  const auto frame = renderer->drawFrame(unseen);
+  REQUIRE(frame.has_value());
+  CHECK(std::string(frame->passes.back().name) == "read_back");
+  CHECK_FALSE(renderer->minimised());
   CHECK(renderer->validationMessages() == 0);
 }
 
