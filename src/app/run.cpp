@@ -1,13 +1,8 @@
 #include "app/run.h"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <limits>
 #include <thread>
 
@@ -15,10 +10,9 @@
 #include <spdlog/spdlog.h>
 
 #include "app/image_generator.h"
+#include "app/outputs.h"
 #include "app/recorder.h"
 #include "app/statistics.h"
-#include "raster/distance_map.h"
-#include "raster/picture.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -63,42 +57,6 @@ class Pace {
   int64_t periodNs_, dueNs_ = 0;
 };
 
-// Slant range from reversed-Z depth: depth = near / z, and the ray through a pixel has z = 1.
-std::vector<float> slantRange(std::span<const float> depth, const View& view) {
-  std::vector<float> rangeM(depth.size(), std::numeric_limits<float>::quiet_NaN());
-  size_t i = 0;
-  for (int row = 0; row < view.heightPx; ++row) {
-    for (int column = 0; column < view.widthPx; ++column, ++i) {
-      if (depth[i] <= 0) continue;
-      const Vec3d ray = rayThroughPixel(view.frustum, view.widthPx, view.heightPx, column, row);
-      rangeM[i] = static_cast<float>(view.frustum.nearM / static_cast<double>(depth[i]) * glm::length(ray));
-    }
-  }
-  return rangeM;
-}
-
-// That the folder of an output is there and may be written to.
-Result<void> checkFolder(const std::string& path) {
-  if (path.empty()) return {};
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  if (access(folder.empty() ? "." : folder.c_str(), W_OK) == 0) return {};
-  return fail(ErrorKind::io,
-              fmt::format("{}: cannot write there: {}; make the folder or choose another", path, std::strerror(errno)));
-}
-
-Result<void> writeLastFrame(const Options& options, const ImageGenerator& generator) {
-  if (!options.screenshot.empty()) {
-    const Result<void> written =
-        writePng(options.screenshot, generator.picture(), generator.widthPx(), generator.heightPx());
-    if (!written) return written;
-  }
-  if (!options.distanceMap.empty()) {
-    const std::vector<float> rangeM = slantRange(generator.depth(), generator.view());
-    return writeDistanceMap(options.distanceMap, rangeM, generator.widthPx(), generator.heightPx());
-  }
-  return {};
-}
-
 Result<std::unique_ptr<Recorder>> startRecorder(const Options& options, ImageGenerator& generator, double rateHz) {
   if (options.record.empty() && options.framesFolder.empty()) return std::unique_ptr<Recorder>();
   return Recorder::create(
@@ -107,6 +65,63 @@ Result<std::unique_ptr<Recorder>> startRecorder(const Options& options, ImageGen
                       .widthPx = generator.renderer().widthPx(),
                       .heightPx = generator.renderer().heightPx(),
                       .rateHz = std::isfinite(rateHz) && !options.offline ? rateHz : kOfflineRateHz});
+}
+
+struct Flight {
+  RunSummary summary;
+  double startupMs = 0;    // from the start of the program to the first frame's end
+  bool lastFrame = false;  // the last frame was drawn, and what the outputs want of it is read back
+};
+
+// Frames until a limit, the source or the user ends it. An output that fails ends it too.
+Flight fly(const Options& options, ImageGenerator& generator, std::optional<StatisticsFile>& stats, Recorder* recorder,
+           double rateHz, int64_t startedNs, FirstError& failure) {
+  Renderer& renderer = generator.renderer();
+  const bool displayPaces = !options.headless && options.vsync && renderer.device().type != "CPU";
+  Pace pace(displayPaces ? std::numeric_limits<double>::infinity() : rateHz), unseenPace(kDisplayRateHz);
+  const Limits limits = limitsOf(options);
+  const bool wantsPicture = !options.screenshot.empty(), wantsDepth = !options.distanceMap.empty();
+  Flight flight;
+  double timeS = 0;
+  bool isRead = false;  // what the outputs want of the last frame
+  const int64_t beganNs = monotonicNs();
+  for (uint64_t number = 0;; ++number) {
+    const Result<bool> shown = renderer.awaitDisplay();
+    if (!shown) {
+      failure.keep(tl::unexpected(shown.error()));
+      return flight;
+    }
+    const double nowS = options.offline ? static_cast<double>(number) / kOfflineRateHz
+                                        : static_cast<double>(monotonicNs() - beganNs) * 1e-9;
+    if (nowS >= limits.durationS && number > 0) break;
+    timeS = nowS;
+    const bool last = number + 1 >= limits.frames;
+    const Result<FrameRecord> record =
+        generator.frame(timeS, recorder != nullptr || (wantsPicture && last), wantsDepth && last);
+    if (!record) {
+      failure.keep(tl::unexpected(record.error()));
+      return flight;
+    }
+    isRead = (last || !wantsPicture || recorder != nullptr) && (last || !wantsDepth);
+    if (number == 0) flight.startupMs = static_cast<double>(monotonicNs() - startedNs) * 1e-6;
+    flight.summary.add(*record);
+    if (stats && !failure.keep(stats->write(*record))) break;
+    if (recorder && !failure.keep(recorder->add(generator.picture(), generator.widthPx(), generator.heightPx(), timeS)))
+      break;
+    if (last || stopRequested != 0 || (limits.endWithSource && generator.sourceFinished())) break;
+    if (!options.headless && !renderer.pollWindow()) break;
+    if (!options.headless && !*shown)
+      unseenPace.wait();
+    else
+      pace.wait();
+  }
+  // That it was the last is not always known beforehand: then it is drawn again to be read.
+  if (!isRead) {
+    const Result<FrameRecord> again = generator.frame(timeS, wantsPicture, wantsDepth);
+    if (!failure.keep(again ? Result<void>() : tl::unexpected(again.error()))) return flight;
+  }
+  flight.lastFrame = true;
+  return flight;
 }
 
 void reportRun(const RunSummary& summary, double startupMs, const Options& options) {
@@ -151,10 +166,7 @@ Result<void> run(const Options& given, int64_t startedNs) {
   if (!options.trace.empty()) startTrace();
   nameThread("render");
 
-  // Outputs that cannot be written are found out before the flight.
-  for (const std::string& path :
-       {options.screenshot, options.distanceMap, options.summary, options.trace, options.record})
-    if (const Result<void> writable = checkFolder(path); !writable) return writable;
+  if (const Result<void> writable = checkOutputs(options); !writable) return writable;
   std::optional<StatisticsFile> stats;
   if (!options.stats.empty()) {
     Result<StatisticsFile> file = StatisticsFile::create(options.stats);
@@ -170,61 +182,27 @@ Result<void> run(const Options& given, int64_t startedNs) {
   const double rateHz = options.rateHz.value_or(options.headless ? defaultRateHz : kDisplayRateHz);
   Result<std::unique_ptr<Recorder>> recorder = startRecorder(options, generator, rateHz);
   if (!recorder) return tl::unexpected(recorder.error());
-  const bool displayPaces = !options.headless && options.vsync && generator.renderer().device().type != "CPU";
-  Pace pace(displayPaces ? std::numeric_limits<double>::infinity() : rateHz), unseenPace(kDisplayRateHz);
 
-  const Limits limits = limitsOf(options);
-  const bool wantsPicture = !options.screenshot.empty(), wantsDepth = !options.distanceMap.empty();
-  RunSummary summary;
-  double startupMs = 0;
-  const int64_t beganNs = monotonicNs();
-  for (uint64_t number = 0;; ++number) {
-    const Result<bool> shown = generator.renderer().awaitDisplay();
-    if (!shown) return tl::unexpected(shown.error());
-    const double timeS = options.offline ? static_cast<double>(number) / kOfflineRateHz
-                                         : static_cast<double>(monotonicNs() - beganNs) * 1e-9;
-    if (timeS >= limits.durationS && number > 0) break;
-    const bool last = number + 1 >= limits.frames;
-    // Which frame is the last is not always known beforehand: then every frame is read back.
-    const bool readPicture = *recorder || (wantsPicture && (last || !options.frames));
-    const bool readDepth = wantsDepth && (last || !options.frames);
-    const Result<FrameRecord> record = generator.frame(timeS, readPicture, readDepth);
-    if (!record) return tl::unexpected(record.error());
-    if (number == 0) startupMs = static_cast<double>(monotonicNs() - startedNs) * 1e-6;
-    summary.add(*record);
-    if (stats)
-      if (const Result<void> written = stats->write(*record); !written) return written;
-    if (*recorder)
-      if (const Result<void> added =
-              (*recorder)->add(generator.picture(), generator.widthPx(), generator.heightPx(), timeS);
-          !added)
-        return added;
-    if (last || stopRequested != 0 || (limits.endWithSource && generator.sourceFinished())) break;
-    if (!options.headless && !generator.renderer().pollWindow()) break;
-    if (!options.headless && !*shown)
-      unseenPace.wait();
-    else
-      pace.wait();
-  }
+  FirstError failure;
+  const Flight flight = fly(options, generator, stats, recorder->get(), rateHz, startedNs, failure);
+  reportRun(flight.summary, flight.startupMs, options);
 
-  reportRun(summary, startupMs, options);
-  if (const Result<void> written = writeLastFrame(options, generator); !written) return written;
-  if (*recorder)
-    if (const Result<void> finished = (*recorder)->finish(); !finished) return finished;
-  if (stats)
-    if (const Result<void> closed = stats->close(); !closed) return closed;
-  if (!options.summary.empty()) {
-    const Result<void> written =
-        summary.write(options.summary, generator.renderer().device().name, startupMs, options.settingsLine());
-    if (!written) return written;
+  if (flight.lastFrame) {
+    failure.keep(writeScreenshot(options, generator));
+    failure.keep(writeDistances(options, generator));
   }
+  if (*recorder) failure.keep((*recorder)->finish());
+  if (stats) failure.keep(stats->close());
+  if (!options.summary.empty())
+    failure.keep(flight.summary.write(options.summary, generator.renderer().device().name, flight.startupMs,
+                                      options.settingsLine()));
   const uint64_t messages = generator.renderer().validationMessages();
   created->reset();  // the paging thread ends before the trace is written
-  if (!options.trace.empty())
-    if (const Result<void> written = writeTrace(options.trace); !written) return written;
+  if (!options.trace.empty()) failure.keep(writeTrace(options.trace));
   if (messages > 0)
-    return fail(ErrorKind::device, fmt::format("{} Vulkan validation messages; they are in the log above", messages));
-  return {};
+    failure.keep(
+        fail(ErrorKind::device, fmt::format("{} Vulkan validation messages; they are in the log above", messages)));
+  return failure.result();
 }
 
 }  // namespace eye

@@ -245,6 +245,40 @@ TEST_CASE("bad input: outputs that cannot be written") {
   expectFailure("eyepoint-bake",
                 {"--elevation", testFile("tiny.tif"), "--out", "/nonexistent/folder/out.eyt", "--log-level", "error"},
                 1, "/nonexistent/folder");
+  expectFailure("eyepoint", picture(file, {"--summary", testFile("")}), 1, "folder");
+}
+
+TEST_CASE("bad input: an output that cannot be written keeps none of the others back") {
+  const std::string file = tinyDatabase();
+  const std::vector<std::pair<std::string, std::string>> outputs{{"--screenshot", testFile("kept.png")},
+                                                                 {"--distance-map", testFile("kept.tif")},
+                                                                 {"--stats", testFile("kept.jsonl")},
+                                                                 {"--summary", testFile("kept.json")},
+                                                                 {"--trace", testFile("kept.trace")}};
+  for (const auto& [full, unused] : outputs) {
+    std::vector<std::string> words = picture(file);
+    for (const auto& [option, path] : outputs) {
+      fs::remove(path);
+      words.insert(words.end(), {option, option == full ? "/dev/full" : path});
+    }
+    expectFailure("eyepoint", words, 1, "/dev/full");
+    for (const auto& [option, path] : outputs) {
+      INFO(full << " cannot be written: " << path);
+      CHECK((option == full || (fs::exists(path) && fs::file_size(path) > 0)));
+    }
+  }
+}
+
+TEST_CASE("bad input: a flight that ends before its last frame was known still leaves its picture") {
+  const std::string file = tinyDatabase(), png = testFile("early_end.png"), map = testFile("early_end.tif");
+  fs::remove(png);
+  fs::remove(map);
+  const ProgramRun run = runProgram("eyepoint", picture(file, {"--frames", "1000000", "--duration", "0.2",
+                                                               "--screenshot", png, "--distance-map", map}));
+  INFO(run.err);
+  CHECK(run.exitCode == 0);
+  CHECK(fs::exists(png));
+  CHECK(fs::exists(map));
 }
 
 TEST_CASE("bad input: a cache too small for the view is said once, with what to give") {
@@ -265,4 +299,3 @@ TEST_CASE("bad input: a cache too small for the view is said once, with what to 
 }
 
 }  // namespace eye::truth
-
