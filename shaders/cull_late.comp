@@ -13,8 +13,8 @@ float depthAt(ivec2 texel, int level) {
 // Behind the farthest depth of the rectangle's footprint.
 bool isOccluded(MapRect rect) {
   if (!rect.isKnown) return false;
-  int level = levelOf(params, rect);
-  ivec2 low = texelAt(rect.low, params.mapPx, level), high = texelAt(rect.high, params.mapPx, level);
+  int level = levelOf(rect);
+  ivec2 low = texelAt(rect.low, level), high = texelAt(rect.high, level);
   float farthest = 1.0;
   for (int y = low.y; y <= high.y; ++y) {
     for (int x = low.x; x <= high.x; ++x) farthest = min(farthest, depthAt(ivec2(x, y), level));

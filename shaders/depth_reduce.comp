@@ -5,18 +5,14 @@
 
 layout(local_size_x = EYE_DEPTH_GROUP, local_size_y = EYE_DEPTH_GROUP) in;
 
-layout(push_constant) uniform Push { int level; };  // the one to make; steers no branch
+layout(push_constant, scalar) uniform Push { DepthLevel level; };
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  ivec2 size = levelSize(params.mapPx, level), finerSize = levelSize(params.mapPx, level - 1);
-  if (texel.x >= size.x || texel.y >= size.y) return;
-  ivec2 columns = finerSpan(texel.x, size.x, finerSize.x), rows = finerSpan(texel.y, size.y, finerSize.y);
-  int finer = params.levelOffset[level - 1];
-  float farthest = 1.0;
-  for (int row = rows.x; row <= rows.y; ++row) {
-    for (int column = columns.x; column <= columns.y; ++column)
-      farthest = min(farthest, pyramid[finer + row * finerSize.x + column]);
-  }
-  pyramid[params.levelOffset[level] + texel.y * size.x + texel.x] = farthest;
+  if (texel.x >= level.size.x || texel.y >= level.size.y) return;
+  int left = 2 * texel.x, right = min(left + 1, level.finerSize.x - 1);
+  int top = level.finerOffset + 2 * texel.y * level.finerSize.x;
+  int bottom = level.finerOffset + min(2 * texel.y + 1, level.finerSize.y - 1) * level.finerSize.x;
+  pyramid[level.offset + texel.y * level.size.x + texel.x] =
+      min(min(pyramid[top + left], pyramid[top + right]), min(pyramid[bottom + left], pyramid[bottom + right]));
 }

@@ -21,7 +21,8 @@
 #define EYE_BIND_FATES 7
 #define EYE_BIND_DEPTH 8
 #define EYE_BIND_PYRAMID 9
-#define EYE_CULL_BINDINGS 10
+#define EYE_BIND_PIXEL_SPANS 10
+#define EYE_CULL_BINDINGS 11
 
 // What became of a cluster, in the low bits of its fate; above them its count of triangles.
 #define EYE_FATE_VISIBLE 0u

@@ -146,32 +146,29 @@ EYE_FUNCTION MapRect mapRectOf(CullParams params, ClipBox b) {
   return rect;
 }
 
-// Levels halve, rounding down; the last texel of a row or column takes in what is left over.
+// Levels halve, rounding up: a texel covers two by two of the finer level, at the far edges perhaps fewer.
 EYE_FUNCTION ivec2 levelSize(ivec2 mapPx, int level) {
-  return ivec2(max(1, mapPx.x >> level), max(1, mapPx.y >> level));
+  int more = (1 << level) - 1;
+  return ivec2((mapPx.x + more) >> level, (mapPx.y + more) >> level);
 }
-EYE_FUNCTION ivec2 texelAt(ivec2 finest, ivec2 mapPx, int level) {
-  ivec2 size = levelSize(mapPx, level);
-  return ivec2(min(finest.x >> level, size.x - 1), min(finest.y >> level, size.y - 1));
+EYE_FUNCTION ivec2 texelAt(ivec2 finest, int level) {
+  return ivec2(finest.x >> level, finest.y >> level);
 }
+
 // Texels of a level that the rectangle touches.
-EYE_FUNCTION int texelsOf(CullParams params, MapRect rect, int level) {
-  ivec2 extent = texelAt(rect.high, params.mapPx, level) - texelAt(rect.low, params.mapPx, level);
+EYE_FUNCTION int texelsOf(MapRect rect, int level) {
+  ivec2 extent = texelAt(rect.high, level) - texelAt(rect.low, level);
   return (extent.x + 1) * (extent.y + 1);
 }
 
 // The finest level at which they are not too many. Terrain seen from low down is wide and flat, and its rectangles end
 // where the sky begins: with the usual four texels, of 56 clusters hidden in a view over the Tatra none was found.
-EYE_FUNCTION int levelOf(CullParams params, MapRect rect) {
+EYE_FUNCTION int levelOf(MapRect rect) {
   int level = 0;
-  while (texelsOf(params, rect, level) > EYE_RECT_TEXELS) ++level;
+  while (texelsOf(rect, level) > EYE_RECT_TEXELS) ++level;
   return level;
 }
 
-// First and last texel of the finer level that a texel covers, along one axis.
-EYE_FUNCTION ivec2 finerSpan(int texel, int size, int finerSize) {
-  return ivec2(min(2 * texel, finerSize - 1), texel == size - 1 ? finerSize - 1 : 2 * texel + 1);
-}
 // First and last pixel of the picture that a texel of the finest level touches, along one axis.
 EYE_FUNCTION ivec2 pixelSpan(int texel, int mapPx, int picturePx) {
   return ivec2(texel * picturePx / mapPx, ((texel + 1) * picturePx + mapPx - 1) / mapPx - 1);

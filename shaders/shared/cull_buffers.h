@@ -33,6 +33,10 @@ layout(set = 0, binding = EYE_BIND_DEPTH, scalar) readonly buffer DepthBlock {
 layout(set = 0, binding = EYE_BIND_PYRAMID, scalar) buffer PyramidBlock {
   float pyramid[];
 };
+// pixelSpan of each column, then of each row, of the depth map: integer division is slow on CPUs.
+layout(set = 0, binding = EYE_BIND_PIXEL_SPANS, scalar) readonly buffer SpansBlock {
+  ivec2 pixelSpans[];
+};
 
 // Of the clusters of a group: their indices where they are drawn, else 0, and their chunks.
 shared uint drawnIndices[EYE_CULL_GROUP];

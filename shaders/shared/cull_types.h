@@ -59,6 +59,13 @@ struct CullParams {
   int levelOffset[EYE_MAX_DEPTH_LEVELS];  // into the pyramid's floats
 };
 
+// Push constants of the depth pyramid's passes: the level to make and what it is made from, a finer one or the picture.
+// They steer no branch by themselves, so lavapipe compiles nothing anew.
+struct DepthLevel {
+  ivec2 size, finerSize;
+  int offset, finerOffset;  // into the pyramid's floats
+};
+
 #ifdef __cplusplus
 static_assert(sizeof(ClusterRecord) == 24 && sizeof(CullChunk) == 64 && sizeof(CullCandidate) == 8);
 static_assert(sizeof(DrawCommand) == 20 && offsetof(DrawCommand, firstInstance) == 16);

@@ -49,9 +49,14 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
 }
 
 vk::raii::Pipeline createComputePipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
-                                         std::span<const uint32_t> spirv, vk::PipelineLayout layout) {
+                                         std::span<const uint32_t> spirv, vk::PipelineLayout layout,
+                                         std::optional<int32_t> constant) {
   const vk::raii::ShaderModule module = createModule(gpu, spirv);
-  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
+  const vk::SpecializationMapEntry entry(0, 0, sizeof(int32_t));
+  const int32_t value = constant.value_or(0);
+  const vk::SpecializationInfo specialization(1, &entry, sizeof(value), &value);
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                                constant ? &specialization : nullptr);
   return {gpu.device, cache, vk::ComputePipelineCreateInfo({}, stage, layout)};
 }
 

@@ -27,7 +27,9 @@ struct PipelineSpec {
 };
 
 vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const PipelineSpec& spec);
+// `constant`: the specialization constant 0.
 vk::raii::Pipeline createComputePipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
-                                         std::span<const uint32_t> spirv, vk::PipelineLayout layout);
+                                         std::span<const uint32_t> spirv, vk::PipelineLayout layout,
+                                         std::optional<int32_t> constant = {});
 
 }  // namespace eye

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "shared/cull.h"
+
 namespace eye {
 namespace {
 
@@ -30,7 +32,7 @@ bool grow(const GpuDevice& gpu, size_t count, size_t elementBytes, vk::BufferUsa
 
 PyramidLayout pyramidLayout(glm::ivec2 mapPx) {
   PyramidLayout layout;
-  for (glm::ivec2 size = mapPx;; size = glm::max(size / 2, glm::ivec2(1))) {
+  for (glm::ivec2 size = mapPx;; size = (size + 1) / 2) {
     EYE_CHECK(layout.levels < EYE_MAX_DEPTH_LEVELS);
     layout.offset[static_cast<size_t>(layout.levels++)] = static_cast<int32_t>(layout.texels);
     layout.texels += static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
@@ -40,6 +42,7 @@ PyramidLayout pyramidLayout(glm::ivec2 mapPx) {
 
 CullLists::CullLists(const GpuDevice& gpu) {
   params_ = createBuffer(gpu, sizeof(shader::CullParams), Use::eStorageBuffer, MemoryUse::upload);
+  params_.as<shader::CullParams>()[0] = {};
   reserve(gpu, {}, {1, 1}, {1, 1});
 }
 
@@ -64,7 +67,24 @@ bool CullLists::reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, 
                MemoryUse::device, depthCapacity_, depth_);
   made |= grow(gpu, pyramidLayout(mapPx).texels, sizeof(float), Use::eStorageBuffer | Use::eTransferSrc,
                MemoryUse::device, pyramidCapacity_, pyramid_);
+  const auto sides = static_cast<size_t>(mapPx.x) + static_cast<size_t>(mapPx.y);
+  if (grow(gpu, sides, sizeof(glm::ivec2), Use::eStorageBuffer, MemoryUse::upload, spansCapacity_, pixelSpans_)) {
+    made = true;
+    spansMapPx_ = {0, 0};
+  }
   return made;
+}
+
+void CullLists::writePixelSpans(glm::ivec2 picturePx, glm::ivec2 mapPx) {
+  if (mapPx == spansMapPx_ && picturePx == spansPicturePx_) return;
+  const auto spans = pixelSpans_.as<glm::ivec2>();
+  size_t next = 0;
+  for (int x = 0; x < mapPx.x; ++x) spans[next++] = shader::pixelSpan(x, mapPx.x, picturePx.x);
+  for (int y = 0; y < mapPx.y; ++y) spans[next++] = shader::pixelSpan(y, mapPx.y, picturePx.y);
+  longestSpanPx_ = 0;
+  for (const glm::ivec2& span : spans.first(next)) longestSpanPx_ = std::max(longestSpanPx_, span.y - span.x + 1);
+  spansMapPx_ = mapPx;
+  spansPicturePx_ = picturePx;
 }
 
 void CullLists::write(std::span<const ChunkDraw> draws, const View& view, const glm::mat4& clipFromEcef,
@@ -87,6 +107,7 @@ void CullLists::write(std::span<const ChunkDraw> draws, const View& view, const 
   candidateCount_ = count;
   chunkCount_ = static_cast<uint32_t>(draws.size());
 
+  writePixelSpans({view.widthPx, view.heightPx}, mapPx);
   const PyramidLayout layout = pyramidLayout(mapPx);
   const auto row = [&](int r) { return glm::vec3(clipFromEcef[0][r], clipFromEcef[1][r], clipFromEcef[2][r]); };
   shader::CullParams& params = params_.as<shader::CullParams>()[0];

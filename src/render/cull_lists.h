@@ -8,7 +8,7 @@
 
 namespace eye {
 
-// Sizes and places of the pyramid's levels: halved, rounding down, to a single texel.
+// Places of the pyramid's levels: halved, rounding up, to a single texel.
 struct PyramidLayout {
   int levels = 0;
   std::array<int32_t, EYE_MAX_DEPTH_LEVELS> offset{};
@@ -27,6 +27,7 @@ class CullLists {
   // Of the frame that has just finished.
   CullCounts counts() const;
 
+  int longestSpanPx() const { return longestSpanPx_; }  // pixels that a texel of the map touches along an axis
   uint32_t chunkCount() const { return chunkCount_; }
   uint32_t candidateCount() const { return candidateCount_; }
   const shader::CullParams& params() const { return params_.as<shader::CullParams>()[0]; }
@@ -40,11 +41,16 @@ class CullLists {
   const GpuBuffer& fatesBuffer() const { return fates_; }
   const GpuBuffer& depthBuffer() const { return depth_; }
   const GpuBuffer& pyramidBuffer() const { return pyramid_; }
+  const GpuBuffer& pixelSpansBuffer() const { return pixelSpans_; }
 
  private:
-  size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0;
+  void writePixelSpans(glm::ivec2 picturePx, glm::ivec2 mapPx);
+
+  size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0, spansCapacity_ = 0;
   uint32_t chunkCount_ = 0, candidateCount_ = 0;
-  GpuBuffer params_, chunks_, candidates_, early_, late_, fates_, depth_, pyramid_;
+  GpuBuffer params_, chunks_, candidates_, early_, late_, fates_, depth_, pyramid_, pixelSpans_;
+  glm::ivec2 spansMapPx_{0, 0}, spansPicturePx_{0, 0};  // what pixelSpans_ is for
+  int longestSpanPx_ = 0;
 };
 
 }  // namespace eye

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "gpu/pipeline.h"
+#include "shared/cull.h"
 #include "spirv/cull_early_comp.h"
 #include "spirv/cull_late_comp.h"
 #include "spirv/depth_map_comp.h"
@@ -13,6 +14,9 @@ namespace {
 
 using Access = vk::AccessFlagBits2;
 using Stage = vk::PipelineStageFlagBits2;
+
+// From 800x600 to 320x240, the smallest of the selector's maps, a texel touches three pixels; in 1280x720 four or five.
+constexpr int32_t kMostTaps = 5;
 
 uint32_t groups(int count, int perGroup) {
   return static_cast<uint32_t>((count + perGroup - 1) / perGroup);
@@ -41,20 +45,21 @@ CullPass::CullPass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache) {
   const vk::DescriptorPoolSize size(vk::DescriptorType::eStorageBuffer, EYE_CULL_BINDINGS);
   pool_ = {gpu.device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, size)};
   set_ = std::move(vk::raii::DescriptorSets(gpu.device, vk::DescriptorSetAllocateInfo(*pool_, *setLayout_)).front());
-  const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(int32_t));
+  const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(shader::DepthLevel));
   layout_ = {gpu.device, vk::PipelineLayoutCreateInfo({}, *setLayout_, push)};
   const auto make = [&](std::span<const uint32_t> spirv) { return createComputePipeline(gpu, cache, spirv, *layout_); };
   early_ = make(k_cull_early_comp);
   late_ = make(k_cull_late_comp);
-  map_ = make(k_depth_map_comp);
+  for (int32_t taps = 0; taps <= kMostTaps; ++taps)
+    map_.push_back(createComputePipeline(gpu, cache, k_depth_map_comp, *layout_, taps));
   reduce_ = make(k_depth_reduce_comp);
 }
 
 void CullPass::bind(const GpuDevice& gpu, const ChunkPools& pools, const CullLists& lists) {
   const std::array<const GpuBuffer*, EYE_CULL_BINDINGS> buffers{
-      &lists.paramsBuffer(),  &lists.chunksBuffer(), &lists.candidatesBuffer(), &pools.clusterBuffer(),
-      &pools.visibleBuffer(), &lists.earlyBuffer(),  &lists.lateBuffer(),       &lists.fatesBuffer(),
-      &lists.depthBuffer(),   &lists.pyramidBuffer()};
+      &lists.paramsBuffer(),  &lists.chunksBuffer(),  &lists.candidatesBuffer(), &pools.clusterBuffer(),
+      &pools.visibleBuffer(), &lists.earlyBuffer(),   &lists.lateBuffer(),       &lists.fatesBuffer(),
+      &lists.depthBuffer(),   &lists.pyramidBuffer(), &lists.pixelSpansBuffer()};
   std::array<vk::DescriptorBufferInfo, EYE_CULL_BINDINGS> infos;
   std::vector<vk::WriteDescriptorSet> writes;
   for (uint32_t binding = 0; binding < EYE_CULL_BINDINGS; ++binding) {
@@ -71,6 +76,15 @@ void CullPass::dispatchClusters(const vk::raii::CommandBuffer& commands, const v
   commands.dispatch(groups(static_cast<int>(lists.candidateCount()), EYE_CULL_GROUP), 1, 1);
 }
 
+void CullPass::recordWarmUp(const vk::raii::CommandBuffer& commands) const {
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, nullptr);
+  for (const vk::raii::Pipeline& map : map_) {
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *map);
+    recordLevel(commands, {{1, 1}, {1, 1}, 0, 0});
+    recordComputeBarrier(commands);
+  }
+}
+
 void CullPass::recordEarly(const vk::raii::CommandBuffer& commands, const CullLists& lists) const {
   // Visibility: of the last frame's late pass, or cleared for chunks that have just come. The last frame's draws have
   // read the commands.
@@ -79,6 +93,11 @@ void CullPass::recordEarly(const vk::raii::CommandBuffer& commands, const CullLi
                       Access::eShaderStorageRead | Access::eShaderStorageWrite);
   dispatchClusters(commands, early_, lists);
   recordCommandsBarrier(commands);
+}
+
+void CullPass::recordLevel(const vk::raii::CommandBuffer& commands, const shader::DepthLevel& level) const {
+  commands.pushConstants<shader::DepthLevel>(*layout_, vk::ShaderStageFlagBits::eCompute, 0, level);
+  commands.dispatch(groups(level.size.x, EYE_DEPTH_GROUP), groups(level.size.y, EYE_DEPTH_GROUP), 1);
 }
 
 void CullPass::recordDepthPyramid(const vk::raii::CommandBuffer& commands, const Targets& targets,
@@ -93,16 +112,17 @@ void CullPass::recordDepthPyramid(const vk::raii::CommandBuffer& commands, const
   recordMemoryBarrier(commands, Stage::eTransfer, Access::eTransferWrite, Stage::eComputeShader,
                       Access::eShaderStorageRead);
 
-  const glm::ivec2 mapPx = lists.params().mapPx;
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, nullptr);
-  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *map_);
-  commands.dispatch(groups(mapPx.x, EYE_DEPTH_GROUP), groups(mapPx.y, EYE_DEPTH_GROUP), 1);
+  const int span = lists.longestSpanPx();
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *map_[static_cast<size_t>(span <= kMostTaps ? span : 0)]);
+  const shader::CullParams& params = lists.params();
+  shader::DepthLevel made{params.mapPx, params.picturePx, 0, 0};
+  recordLevel(commands, made);
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *reduce_);
-  for (int32_t level = 1; level < lists.params().levelCount; ++level) {
+  for (int level = 1; level < params.levelCount; ++level) {
     recordComputeBarrier(commands);
-    commands.pushConstants<int32_t>(*layout_, vk::ShaderStageFlagBits::eCompute, 0, level);
-    const glm::ivec2 size = glm::max(mapPx >> level, glm::ivec2(1));
-    commands.dispatch(groups(size.x, EYE_DEPTH_GROUP), groups(size.y, EYE_DEPTH_GROUP), 1);
+    made = {shader::levelSize(params.mapPx, level), made.size, params.levelOffset[level], made.offset};
+    recordLevel(commands, made);
   }
   recordComputeBarrier(commands);
 }

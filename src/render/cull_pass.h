@@ -16,6 +16,8 @@ class CullPass {
   // Nothing that uses the set may be in flight.
   void bind(const GpuDevice& gpu, const ChunkPools& pools, const CullLists& lists);
 
+  // Runs each variant of a pipeline once, with results that nobody wants: the driver compiles at the first use.
+  void recordWarmUp(const vk::raii::CommandBuffer& commands) const;
   // Writes the early commands from last frame's visibility. Outside a render pass.
   void recordEarly(const vk::raii::CommandBuffer& commands, const CullLists& lists) const;
   // Copies the depth target, which is left as a target, and reduces it to the pyramid.
@@ -27,12 +29,14 @@ class CullPass {
  private:
   void dispatchClusters(const vk::raii::CommandBuffer& commands, const vk::raii::Pipeline& pipeline,
                         const CullLists& lists) const;
+  void recordLevel(const vk::raii::CommandBuffer& commands, const shader::DepthLevel& level) const;
 
   vk::raii::DescriptorSetLayout setLayout_{nullptr};
   vk::raii::DescriptorPool pool_{nullptr};
   vk::raii::DescriptorSet set_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};
-  vk::raii::Pipeline early_{nullptr}, late_{nullptr}, map_{nullptr}, reduce_{nullptr};
+  vk::raii::Pipeline early_{nullptr}, late_{nullptr}, reduce_{nullptr};
+  std::vector<vk::raii::Pipeline> map_;  // for texels of any number of pixels each way, of one, of two ...
 };
 
 }  // namespace eye

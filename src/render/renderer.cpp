@@ -84,6 +84,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     impl->cullLists = std::make_unique<CullLists>(device);
     impl->cull = std::make_unique<CullPass>(device, impl->cache);
     impl->cull->bind(device, *impl->pools, *impl->cullLists);
+    runOnce(device, [&](const vk::raii::CommandBuffer& commands) { impl->cull->recordWarmUp(commands); });
     impl->overlay = std::make_unique<Overlay>(device, impl->cache, impl->colourFormat(), window);
     impl->timestamps = std::make_unique<Timestamps>(device);
     impl->scene->bindTextures(device, impl->pools->textures());

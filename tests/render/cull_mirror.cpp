@@ -20,14 +20,14 @@ std::vector<float> pyramidOf(const CullReadBack& gpu) {
     return farthest;
   };
   for (int level = 0; level < p.levelCount; ++level) {
-    const ivec2 size = levelSize(p.mapPx, level), finer = levelSize(p.mapPx, level - 1);
+    const ivec2 size = levelSize(p.mapPx, level), finer = levelSize(p.mapPx, std::max(0, level - 1));
     for (int y = 0; y < size.y; ++y) {
       for (int x = 0; x < size.x; ++x) {
         at(level, x, y) =
             level == 0
                 ? farthestOf(pixelSpan(x, p.mapPx.x, p.picturePx.x), pixelSpan(y, p.mapPx.y, p.picturePx.y),
                              [&](int px, int py) { return gpu.depth[static_cast<size_t>(py * p.picturePx.x + px)]; })
-                : farthestOf(finerSpan(x, size.x, finer.x), finerSpan(y, size.y, finer.y),
+                : farthestOf({2 * x, std::min(2 * x + 1, finer.x - 1)}, {2 * y, std::min(2 * y + 1, finer.y - 1)},
                              [&](int tx, int ty) { return at(level - 1, tx, ty); });
       }
     }
@@ -37,8 +37,8 @@ std::vector<float> pyramidOf(const CullReadBack& gpu) {
 
 bool isOccluded(const CullParams& p, const std::vector<float>& pyramid, const MapRect& rect) {
   if (!rect.isKnown) return false;
-  const int level = levelOf(p, rect);
-  const ivec2 low = texelAt(rect.low, p.mapPx, level), high = texelAt(rect.high, p.mapPx, level);
+  const int level = levelOf(rect);
+  const ivec2 low = texelAt(rect.low, level), high = texelAt(rect.high, level);
   for (int y = low.y; y <= high.y; ++y) {
     for (int x = low.x; x <= high.x; ++x) {
       const float farthest = pyramid[static_cast<size_t>(p.levelOffset[level] + y * levelSize(p.mapPx, level).x + x)];

@@ -115,12 +115,14 @@ TEST_CASE("the depth map's texels cover every pixel and every finer texel") {
         REQUIRE((span.x <= pixel && pixel <= span.y && span.x >= 0 && span.y < picture));
       }
     }
-    for (int level = 1; (map >> level) > 0; ++level) {
-      const int size = levelSize({map, 1}, level).x, finer = levelSize({map, 1}, level - 1).x;
+    const int levels = pyramidLayout({map, 1}).levels;
+    REQUIRE(levelSize({map, 1}, levels - 1).x == 1);
+    for (int level = 1; level < levels; ++level) {
+      // Halves without a gap: what covers a texel covers both of its children, and the last one is inside.
+      REQUIRE(levelSize({map, 1}, level).x == (levelSize({map, 1}, level - 1).x + 1) / 2);
       for (int x = 0; x < map; ++x) {
-        const int coarse = texelAt({x, 0}, {map, 1}, level).x, fine = texelAt({x, 0}, {map, 1}, level - 1).x;
-        const ivec2 span = finerSpan(coarse, size, finer);
-        REQUIRE((span.x <= fine && fine <= span.y && span.y < finer));
+        REQUIRE(texelAt({x, 0}, level).x == texelAt({x, 0}, level - 1).x / 2);
+        REQUIRE(texelAt({x, 0}, level).x < levelSize({map, 1}, level).x);
       }
     }
   }
@@ -131,16 +133,14 @@ TEST_CASE("a rectangle's texels at its level are few and cover it, and no finer 
   std::mt19937 random(3);
   for (int i = 0; i < 100000; ++i) {
     const auto within = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random); };
-    CullParams params{};
-    params.mapPx = {within(1, 900), within(1, 700)};
-    params.levelCount = pyramidLayout(params.mapPx).levels;
+    const ivec2 map(within(1, 900), within(1, 700));
     MapRect rect{};
-    rect.low = {within(0, params.mapPx.x - 1), within(0, params.mapPx.y - 1)};
-    rect.high = {within(rect.low.x, params.mapPx.x - 1), within(rect.low.y, params.mapPx.y - 1)};
-    const int level = levelOf(params, rect);
-    REQUIRE(level < params.levelCount);
-    REQUIRE(texelsOf(params, rect, level) <= EYE_RECT_TEXELS);
-    if (level > 0) REQUIRE(texelsOf(params, rect, level - 1) > EYE_RECT_TEXELS);
+    rect.low = {within(0, map.x - 1), within(0, map.y - 1)};
+    rect.high = {within(rect.low.x, map.x - 1), within(rect.low.y, map.y - 1)};
+    const int level = levelOf(rect);
+    REQUIRE(level < pyramidLayout(map).levels);
+    REQUIRE(texelsOf(rect, level) <= EYE_RECT_TEXELS);
+    if (level > 0) REQUIRE(texelsOf(rect, level - 1) > EYE_RECT_TEXELS);
   }
 }
 
