@@ -31,11 +31,11 @@ vk::raii::RenderPass createRenderPass(const GpuDevice& gpu, vk::Format format) {
 
 Overlay::Overlay(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat,
                  GLFWwindow* window)
-    : window_(window), renderPass_(createRenderPass(gpu, colourFormat)) {
+    : window_(window), context_(ImGui::CreateContext()), renderPass_(createRenderPass(gpu, colourFormat)) {
   const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 8);
   pool_ = vk::raii::DescriptorPool(
       gpu.device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 8, size));
-  ImGui::CreateContext();
+  ImGui::SetCurrentContext(context_);
   ImGui::GetIO().IniFilename = nullptr;  // nothing is written beside the user's files
   ImGui::StyleColorsDark();
   if (window_ != nullptr) ImGui_ImplGlfw_InitForVulkan(window_, true);
@@ -55,9 +55,10 @@ Overlay::Overlay(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk:
 }
 
 Overlay::~Overlay() {
+  ImGui::SetCurrentContext(context_);
   ImGui_ImplVulkan_Shutdown();
   if (window_ != nullptr) ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
+  ImGui::DestroyContext(context_);
 }
 
 void Overlay::bindTargets(const GpuDevice& gpu, const Targets& targets) {
@@ -69,6 +70,7 @@ void Overlay::bindTargets(const GpuDevice& gpu, const Targets& targets) {
 
 void Overlay::record(const vk::raii::CommandBuffer& commands, const Targets& targets,
                      const std::function<void()>& build) {
+  ImGui::SetCurrentContext(context_);
   ImGui_ImplVulkan_NewFrame();
   if (window_ != nullptr) ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();

@@ -1,5 +1,5 @@
-// Dear ImGui over the picture. Works with and without a window. Owner thread: render. One at a time, since Dear ImGui
-// keeps its state in globals.
+// Dear ImGui over the picture. Works with and without a window. Owner thread: render. Several at once are several
+// contexts; one of them may have a window.
 #pragma once
 
 #include <functional>
@@ -7,6 +7,7 @@
 #include "render/targets.h"
 
 struct GLFWwindow;
+struct ImGuiContext;
 
 namespace eye {
 
@@ -25,6 +26,7 @@ class Overlay {
 
  private:
   GLFWwindow* window_;
+  ImGuiContext* context_;
   vk::raii::RenderPass renderPass_{nullptr};
   vk::raii::DescriptorPool pool_{nullptr};
   vk::raii::Framebuffer framebuffer_{nullptr};
