@@ -1,23 +1,17 @@
 // eyepoint: the image generator. Arguments only; a run is app/run.cpp, a frame app/image_generator.cpp.
-#include <malloc.h>
-
-#include <csignal>
 #include <cstdio>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "app/options.h"
+#include "app/process_setup.h"
 #include "app/run.h"
 #include "telemetry/trace.h"
 
 int main(int argc, char** argv) {
   const int64_t startedNs = eye::monotonicNs();
-  // A software rasteriser frees and takes megabytes in every frame: keep them instead of giving them back to the
-  // system.
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-  mallopt(M_TOP_PAD, 64 << 20);
-  std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that dies is an error of its write
+  eye::setUpProcess();
 
   const eye::ParsedOptions parsed = eye::parseOptions(argc, argv);
   if (parsed.exitStatus) {
