@@ -49,6 +49,13 @@ Result<Sources> Sources::open(const std::vector<std::string>& urls) {
   return sources;
 }
 
+Sources Sources::of(std::unique_ptr<StateSource> source) {
+  Sources sources;
+  sources.sources_.push_back(std::move(source));
+  sources.description_ = "the program itself";
+  return sources;
+}
+
 SourceSample Sources::sample(double timeS) {
   SourceSample newest;
   HostCounts counts;
@@ -74,10 +81,11 @@ bool Sources::allFixed() const {
   return std::all_of(sources_.begin(), sources_.end(), [](const auto& source) { return source->isFixed(); });
 }
 
-Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& options) {
+Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& options,
+                                                               std::unique_ptr<StateSource> source) {
   auto made = std::unique_ptr<ImageGenerator>(new ImageGenerator);
   made->options_ = options;
-  Result<Sources> sources = Sources::open(options.hosts);
+  Result<Sources> sources = source != nullptr ? Sources::of(std::move(source)) : Sources::open(options.hosts);
   if (!sources) return tl::unexpected(sources.error());
   made->sources_ = std::move(*sources);
 

@@ -19,6 +19,7 @@ namespace eye {
 class Sources {
  public:
   static Result<Sources> open(const std::vector<std::string>& urls);
+  static Sources of(std::unique_ptr<StateSource> source);
   SourceSample sample(double timeS);
   bool anyLive() const;
   bool allFixed() const;
@@ -31,7 +32,9 @@ class Sources {
 
 class ImageGenerator {
  public:
-  static Result<std::unique_ptr<ImageGenerator>> create(const Options& options);
+  // `source`: where the state comes from instead of options.hosts.
+  static Result<std::unique_ptr<ImageGenerator>> create(const Options& options,
+                                                        std::unique_ptr<StateSource> source = nullptr);
 
   // Draws the frame of clock `timeS`. Reads back what is asked for: see picture() and depth().
   Result<FrameRecord> frame(double timeS, bool readColour, bool readDepth);
@@ -40,6 +43,8 @@ class ImageGenerator {
   int widthPx() const { return output_.widthPx; }
   int heightPx() const { return output_.heightPx; }
   const View& view() const { return view_; }
+  const Selection& selection() const { return selection_; }  // of the last frame; its nodes are the terrain's
+  const TerrainCache& terrain() const { return pager_->cache(); }
 
   bool sourceFinished() const { return finished_; }
   bool sourceIsFixed() const { return sources_.allFixed(); }
