@@ -12,7 +12,7 @@ enum class BoxVerdict { visible, outside, occluded };
 
 class DepthProbe {
  public:
-  DepthProbe(const View& view);  // of the view's size in pixels
+  explicit DepthProbe(const View& view);  // of the view's size in pixels
   // Corners relative to the eye, ecef. Triangles that reach behind the near plane are left out: they would only hide
   // more.
   void draw(const Vec3d& a, const Vec3d& b, const Vec3d& c);
@@ -20,13 +20,7 @@ class DepthProbe {
   BoxVerdict judge(const OrientedBox& box) const;
 
  private:
-  struct Projected {
-    double x, y, inverseZ;  // pixels, pixels, 1/m
-  };
-  Projected project(const Vec3d& eyeM) const;
-
   View view_;
-  double pixelsPerTan_;
   std::vector<float> inverseZ_;  // of the nearest, 1/m; 0: sky
 };
 

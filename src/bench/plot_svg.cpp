@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "bench/report.h"
+
+namespace eye {
+namespace {
+
+constexpr double kWidth = 960, kHeight = 330;
+constexpr double kLeft = 64, kRight = 14, kTop = 34, kBottom = 46;
+// Told apart on light and dark ground, and by the colour-blind (Okabe and Ito, a little darker).
+constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#c4639a", "#b58900", "#3aa0d8", "#7f7f7f"};
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void add(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  bool isEmpty() const { return !(low <= high); }
+};
+
+// From values to pixels along one axis, and where its lines are.
+struct Axis {
+  double low = 0, high = 1;
+  bool isLogarithmic = false;
+  std::vector<double> ticks;
+
+  double share(double value) const {
+    if (isLogarithmic) return std::log(value / low) / std::log(high / low);
+    return (value - low) / (high - low);
+  }
+};
+
+Axis linearAxis(Range range, bool fromZero) {
+  if (range.isEmpty()) range = {0, 1};
+  if (fromZero) range.add(0);
+  if (range.high - range.low <= 0) range.high = range.low + 1;
+  const double rough = (range.high - range.low) / 6, power = std::pow(10, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.0, 1.0})
+    if (factor * power >= rough) step = factor * power;
+  Axis axis{std::floor(range.low / step) * step, std::ceil(range.high / step) * step, false, {}};
+  for (int i = 0; axis.low + i * step <= axis.high + step / 2; ++i) axis.ticks.push_back(axis.low + i * step);
+  return axis;
+}
+
+Axis logarithmicAxis(const Range& range) {
+  if (range.isEmpty() || range.low <= 0) return linearAxis({1, 10}, false);
+  Axis axis{std::pow(10, std::floor(std::log10(range.low))), std::pow(10, std::ceil(std::log10(range.high))), true, {}};
+  if (axis.high <= axis.low) axis.high = 10 * axis.low;
+  for (double tick = axis.low; tick <= axis.high * 1.001; tick *= 10) axis.ticks.push_back(tick);
+  return axis;
+}
+
+double xPx(double share) {
+  return kLeft + share * (kWidth - kLeft - kRight);
+}
+double yPx(double share) {
+  return kHeight - kBottom - share * (kHeight - kTop - kBottom);
+}
+
+std::string text(double x, double y, const char* anchor, const std::string& words, const char* more = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>", x, y, anchor, more,
+                     escapeHtml(words));
+}
+
+std::string frame(const ReportPlot& plot, const Axis& y) {
+  std::string svg;
+  for (const double tick : y.ticks) {
+    const double at = yPx(y.share(tick));
+    svg += fmt::format("<line class=\"axis\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>", kLeft, kWidth - kRight,
+                       at, at);
+    svg += text(kLeft - 6, at + 4, "end", fmt::format("{:g}", std::abs(tick) < 1e-12 ? 0 : tick));
+  }
+  svg += text(xPx(0.5), kHeight - 6, "middle", plot.xLabel);
+  svg +=
+      text(14, yPx(0.5), "middle", plot.yLabel, fmt::format(" transform=\"rotate(-90 14 {:.1f})\"", yPx(0.5)).c_str());
+  double x = kLeft;
+  for (size_t i = 0; i < plot.series.size(); ++i) {
+    svg += fmt::format("<rect x=\"{:.1f}\" y=\"8\" width=\"12\" height=\"12\" rx=\"2\" fill=\"{}\"/>", x,
+                       kColours[i % kColours.size()]);
+    svg += text(x + 17, 18, "start", plot.series[i].name, " class=\"legend\"");
+    x += 36 + 7.0 * static_cast<double>(plot.series[i].name.size());
+  }
+  return svg;
+}
+
+std::string bars(const ReportPlot& plot, const Axis& y) {
+  std::string svg;
+  const double slot = 1.0 / static_cast<double>(plot.categories.size());
+  const double width = 0.8 * slot / static_cast<double>(plot.series.size());
+  for (size_t c = 0; c < plot.categories.size(); ++c) {
+    const double left = static_cast<double>(c) * slot;
+    svg += text(xPx(left + slot / 2), kHeight - kBottom + 17, "middle", plot.categories[c]);
+    for (size_t s = 0; s < plot.series.size(); ++s) {
+      if (c >= plot.series[s].y.size() || !std::isfinite(plot.series[s].y[c])) continue;
+      const double value = plot.series[s].y[c];
+      const double from = yPx(y.isLogarithmic ? 0 : y.share(0)), to = yPx(y.share(value));
+      svg += fmt::format(
+          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"><title>{}, {}: {:.4g}</title>"
+          "</rect>",
+          xPx(left + 0.1 * slot + static_cast<double>(s) * width), std::min(from, to),
+          width * (kWidth - kLeft - kRight) * 0.94, std::abs(from - to), kColours[s % kColours.size()],
+          escapeHtml(plot.series[s].name), escapeHtml(plot.categories[c]), value);
+    }
+  }
+  return svg;
+}
+
+std::string lines(const ReportPlot& plot, const Axis& y) {
+  Range range;
+  for (const Series& series : plot.series)
+    for (const double value : series.x) range.add(value);
+  const Axis x = linearAxis(range, false);
+  std::string svg;
+  for (const double tick : x.ticks)
+    svg += text(xPx(x.share(tick)), kHeight - kBottom + 17, "middle", fmt::format("{:g}", tick));
+  for (size_t s = 0; s < plot.series.size(); ++s) {
+    const Series& series = plot.series[s];
+    std::string points;
+    for (size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+      if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i]) || (y.isLogarithmic && series.y[i] <= 0)) continue;
+      points += fmt::format("{:.1f},{:.1f} ", xPx(x.share(series.x[i])), yPx(y.share(series.y[i])));
+    }
+    svg += fmt::format(
+        "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\" points=\"{}\">"
+        "<title>{}</title></polyline>",
+        kColours[s % kColours.size()], points, escapeHtml(series.name));
+  }
+  return svg;
+}
+
+}  // namespace
+
+std::string plotSvg(const ReportPlot& plot) {
+  Range range;
+  for (const Series& series : plot.series)
+    for (const double value : series.y)
+      if (!plot.isLogarithmic || value > 0) range.add(value);
+  const bool isBars = !plot.categories.empty();
+  const Axis y = plot.isLogarithmic ? logarithmicAxis(range) : linearAxis(range, true);
+  return fmt::format("<svg viewBox=\"0 0 {} {}\" width=\"{}\" role=\"img\" aria-label=\"{}\">{}{}</svg>", kWidth,
+                     kHeight, kWidth, escapeHtml(plot.title), frame(plot, y), isBars ? bars(plot, y) : lines(plot, y));
+}
+
+}  // namespace eye

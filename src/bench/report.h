@@ -1,0 +1,72 @@
+// What the benchmark writes: report.json for programs, report.html for people.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+
+namespace eye {
+
+// A table as a page shows it; cells are text, the first column's on the left, numbers on the right.
+struct ReportTable {
+  struct Group {
+    std::string name{};
+    size_t columns = 1;
+  };
+  std::string caption{};
+  std::vector<Group> groups{};  // above the columns; empty: none
+  std::vector<std::string> columns{};
+  std::vector<std::vector<std::string>> rows{};
+};
+
+struct Series {
+  std::string name{};
+  std::vector<double> x{}, y{};  // lines: points; bars: y by category, x empty. Not finite: left out
+};
+
+struct ReportPlot {
+  std::string title{}, xLabel{}, yLabel{};
+  std::vector<std::string> categories{};  // not empty: grouped bars
+  bool isLogarithmic = false;             // the y axis; values above 0
+  std::vector<Series> series{};
+};
+
+struct ReportTarget {
+  std::string what{}, measured{};
+  bool isReached = false;
+};
+
+struct SuiteReport {
+  std::string name{}, title{}, introduction{};
+  nlohmann::ordered_json summary = nlohmann::ordered_json::object();
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  // For the page alone.
+  std::string device{};  // that drew
+  std::vector<ReportTarget> targets{};
+  std::vector<ReportTable> tables{};
+  std::vector<ReportPlot> plots{};
+  std::vector<std::string> notes{};  // how to read it
+};
+
+struct Report {
+  std::string machine{}, device{}, commit{}, settings{};
+  std::vector<SuiteReport> suites{};
+};
+
+// "AMD EPYC ..., 2 cores", and the commit that was configured.
+std::string machineLine();
+std::string commitLine();
+
+std::string reportJson(const Report& report);
+std::string reportHtml(const Report& report);
+// An inline picture, readable on light and on dark pages.
+std::string plotSvg(const ReportPlot& plot);
+std::string escapeHtml(const std::string& text);
+
+// Both files into a folder, which is made where it is missing.
+Result<void> writeReport(const Report& report, const std::string& folder);
+
+}  // namespace eye

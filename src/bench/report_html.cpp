@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include "bench/report.h"
+
+namespace eye {
+namespace {
+
+constexpr const char* kStyle = R"(
+:root { color-scheme: light dark; --ink: #1c2733; --soft: #5b6b7b; --line: #d8dfe6; --page: #fbfcfd; --card: #fff;
+  --good: #1f7a4d; --bad: #b4442a; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e4e9ee; --soft: #9aa8b5; --line: #33404c; --page: #151b21;
+  --card: #1c242c; --good: #58c48d; --bad: #ef8a6d; } }
+body { font: 15px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--page); margin: 0; }
+main { max-width: 1080px; margin: 0 auto; padding: 2rem 1.2rem 4rem; }
+h1 { font-size: 1.7rem; margin: 0 0 .2rem; } h2 { margin: 3rem 0 .3rem; font-size: 1.35rem; }
+p { max-width: 75ch; } .soft { color: var(--soft); }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: .1rem 1rem; margin: 1rem 0; }
+dt { color: var(--soft); } dd { margin: 0; }
+figure { margin: 1.4rem 0; padding: .9rem 1rem; background: var(--card); border: 1px solid var(--line);
+  border-radius: 8px; overflow-x: auto; }
+figcaption { font-weight: 600; margin-bottom: .5rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; width: 100%; }
+th, td { padding: .22rem .6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
+th:first-child, td:first-child { text-align: left; }
+th { font-weight: 600; color: var(--soft); } th.group { text-align: center; border-left: 1px solid var(--line); }
+ul.targets { list-style: none; padding: 0; } ul.targets li::before { display: inline-block; width: 1.4em; }
+li.reached::before { content: "\2713"; color: var(--good); } li.missed::before { content: "\2717"; color: var(--bad); }
+svg { max-width: 100%; height: auto; display: block; } svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
+svg .axis { stroke: var(--line); } svg .legend { fill: var(--ink); }
+li { margin: .25rem 0; }
+)";
+
+std::string cells(const std::vector<std::string>& texts, const char* tag) {
+  std::string html;
+  for (const std::string& text : texts) html += fmt::format("<{0}>{1}</{0}>", tag, escapeHtml(text));
+  return html;
+}
+
+std::string tableHtml(const ReportTable& table) {
+  std::string html = fmt::format("<figure><figcaption>{}</figcaption><table><thead>", escapeHtml(table.caption));
+  if (!table.groups.empty()) {
+    html += "<tr>";
+    for (const ReportTable::Group& group : table.groups)
+      html += fmt::format("<th class=\"group\" colspan=\"{}\">{}</th>", group.columns, escapeHtml(group.name));
+    html += "</tr>";
+  }
+  html += "<tr>" + cells(table.columns, "th") + "</tr></thead><tbody>\n";
+  for (const std::vector<std::string>& row : table.rows) html += "<tr>" + cells(row, "td") + "</tr>\n";
+  return html + "</tbody></table></figure>\n";
+}
+
+std::string suiteHtml(const SuiteReport& suite) {
+  std::string html =
+      fmt::format("<section><h2>{}</h2>\n<p>{}</p>\n", escapeHtml(suite.title), escapeHtml(suite.introduction));
+  if (!suite.targets.empty()) {
+    html += "<ul class=\"targets\">\n";
+    for (const ReportTarget& target : suite.targets)
+      html += fmt::format("<li class=\"{}\">{}: <strong>{}</strong></li>\n", target.isReached ? "reached" : "missed",
+                          escapeHtml(target.what), escapeHtml(target.measured));
+    html += "</ul>\n";
+  }
+  for (const ReportPlot& plot : suite.plots)
+    html += fmt::format("<figure><figcaption>{}</figcaption>{}</figure>\n", escapeHtml(plot.title), plotSvg(plot));
+  for (const ReportTable& table : suite.tables) html += tableHtml(table);
+  if (!suite.notes.empty()) {
+    html += "<ul class=\"soft\">\n";
+    for (const std::string& note : suite.notes) html += "<li>" + escapeHtml(note) + "</li>\n";
+    html += "</ul>\n";
+  }
+  return html + "</section>\n";
+}
+
+}  // namespace
+
+std::string escapeHtml(const std::string& text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      case '\'':
+        html += "&#39;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+std::string reportHtml(const Report& report) {
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>Eyepoint benchmark</title>\n"
+      "<style>{}</style></head>\n<body><main><h1>Eyepoint benchmark</h1>\n<dl>",
+      kStyle);
+  const auto line = [&](const char* name, const std::string& value) {
+    html += fmt::format("<dt>{}</dt><dd>{}</dd>", name, escapeHtml(value));
+  };
+  line("Machine", report.machine);
+  line("Device", report.device);
+  line("Commit", report.commit);
+  line("Settings", report.settings);
+  html += "</dl>\n";
+  for (const SuiteReport& suite : report.suites) html += suiteHtml(suite);
+  return html + "</main></body></html>\n";
+}
+
+}  // namespace eye

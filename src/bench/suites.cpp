@@ -1,0 +1,15 @@
+#include "bench/suites.h"
+
+#include <array>
+
+namespace eye {
+
+std::span<const Suite> suites() {
+  static constexpr std::array<Suite, 2> kSuites{
+      {{"culling", "paper 001's Table 5: no culling, frustum, dynamic, by height and size", runCullingSuite},
+       {"selector", "a flight through all heights: what the selector loses against the best fixed choice",
+        runSelectorSuite}}};
+  return kSuites;
+}
+
+}  // namespace eye

@@ -1,0 +1,30 @@
+// The benchmark's suites: what each is given and what it hands back.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "base/error.h"
+#include "bench/report.h"
+
+namespace eye {
+
+struct SuiteOptions {
+  std::string terrain;  // a database; empty: the embedded demo
+  std::string device;
+  bool quick = false;  // seconds instead of minutes: fewer views and frames
+  std::function<void(const std::string& what, double share)> progress;  // 0 to 1 of the suite; may be empty
+};
+
+struct Suite {
+  const char* name;
+  const char* description;
+  Result<SuiteReport> (*run)(const SuiteOptions& options);
+};
+std::span<const Suite> suites();  // in the order in which `all` runs them
+
+Result<SuiteReport> runCullingSuite(const SuiteOptions& options);
+Result<SuiteReport> runSelectorSuite(const SuiteOptions& options);
+
+}  // namespace eye

@@ -1,0 +1,25 @@
+// Which triangle each pixel shows: an identity buffer drawn in software, to count the triangles that a picture needs.
+#pragma once
+
+#include <vector>
+
+#include "geo/view.h"
+
+namespace eye {
+
+class TriangleIds {
+ public:
+  explicit TriangleIds(const View& view);  // of the view's size in pixels
+  // Corners relative to the eye, ecef. Triangles that face away are left out; what reaches behind the near plane is
+  // clipped.
+  void draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t id);
+  // How many different ids show at least one pixel's centre.
+  size_t visible() const;
+
+ private:
+  View view_;
+  std::vector<double> inverseZ_;  // of the nearest, 1/m; 0: sky
+  std::vector<uint32_t> ids_;
+};
+
+}  // namespace eye

@@ -1,0 +1,129 @@
+// eyepoint-bench: suites of measurements over a terrain database, as report.json and report.html.
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include "app/process_setup.h"
+#include "base/nearest_word.h"
+#include "base/progress_line.h"
+#include "bench/suites.h"
+
+namespace {
+
+using namespace eye;
+
+constexpr const char* kAll = "all";
+
+struct Arguments {
+  std::vector<std::string> names;
+  std::string out, logLevel = "warn";
+  SuiteOptions options;
+};
+
+int complain(const Error& error) {
+  fmt::print(stderr, "eyepoint-bench: {}\n", error.message);
+  return exitStatus(error);
+}
+
+std::string suiteNames() {
+  std::string names;
+  for (const Suite& suite : suites()) names += fmt::format("  {:<10} {}\n", suite.name, suite.description);
+  return names + fmt::format("  {:<10} each of them\n", kAll);
+}
+
+void declareOptions(CLI::App& app, Arguments& args) {
+  app.add_option("suites", args.names, "What to measure, see below")->type_name("SUITE")->required();
+  app.add_option("--terrain", args.options.terrain, "Terrain database made by eyepoint-bake; else the embedded demo")
+      ->type_name("FILE");
+  app.add_option("--out", args.out, "Folder for report.json and report.html; made where it is missing")
+      ->type_name("DIR")
+      ->required();
+  app.add_flag("--quick", args.options.quick, "Fewer views and frames: seconds a suite, to see that it works");
+  app.add_option("--device", args.options.device, "Part of a Vulkan device's name; eyepoint lists them")
+      ->type_name("NAME");
+  app.add_option("--log-level", args.logLevel, "What is printed")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->capture_default_str();
+  app.set_version_flag("--version", std::string("eyepoint-bench ") + EYE_VERSION);
+  app.footer("Suites:\n" + suiteNames() +
+             "\nExamples:\n"
+             "  eyepoint-bench culling --terrain tatra.eyt --out culling\n"
+             "  eyepoint-bench all --terrain tatra.eyt --out report --quick");
+}
+
+// The suites that were named, each once, in the suites' own order.
+Result<std::vector<const Suite*>> chosenSuites(const std::vector<std::string>& names) {
+  std::vector<std::string> known{kAll};
+  for (const Suite& suite : suites()) known.emplace_back(suite.name);
+  for (const std::string& name : names) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    const std::string nearest = nearestWord(name, known);
+    return fail(ErrorKind::usage,
+                fmt::format("'{}' is no suite; {}", name,
+                            nearest.empty() ? "see eyepoint-bench --help" : fmt::format("did you mean {}?", nearest)));
+  }
+  std::vector<const Suite*> chosen;
+  for (const Suite& suite : suites()) {
+    if (std::ranges::find(names, suite.name) != names.end() || std::ranges::find(names, kAll) != names.end())
+      chosen.push_back(&suite);
+  }
+  return chosen;
+}
+
+Result<void> measure(const Arguments& args) {
+  const Result<std::vector<const Suite*>> chosen = chosenSuites(args.names);
+  if (!chosen) return tl::unexpected(chosen.error());
+  Report report{.machine = machineLine(),
+                .device = {},
+                .commit = commitLine(),
+                .settings = fmt::format("{}{}", args.options.terrain.empty() ? "embedded demo" : args.options.terrain,
+                                        args.options.quick ? ", quick" : ""),
+                .suites = {}};
+  // The folder first: an hour's figures want a place.
+  if (const Result<void> written = writeReport(report, args.out); !written) return written;
+  for (const Suite* suite : *chosen) {
+    ProgressLine line;
+    SuiteOptions options = args.options;
+    options.progress = [&](const std::string& what, double share) {
+      if (line.isDue())
+        line.print(fmt::format("{} {} {:.0f} %: {}", progressBar(share), suite->name, 100 * share, what));
+    };
+    Result<SuiteReport> done = suite->run(options);
+    if (!done) return tl::unexpected(done.error());
+    report.device = done->device;
+    report.suites.push_back(std::move(*done));
+    if (const Result<void> written = writeReport(report, args.out); !written) return written;
+  }
+  for (const SuiteReport& suite : report.suites) {
+    fmt::print("{}\n", suite.title);
+    for (const ReportTarget& target : suite.targets)
+      fmt::print("  {} {}: {}\n", target.isReached ? "reached" : "missed ", target.what, target.measured);
+  }
+  fmt::print("{0}/report.html\n{0}/report.json\n", args.out);
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  setUpProcess();
+  CLI::App app("Measures the image generator over a terrain database, next to published figures.", "eyepoint-bench");
+  Arguments args;
+  declareOptions(app, args);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
+  } catch (const CLI::ParseError& problem) {
+    return complain({ErrorKind::usage, fmt::format("{} (see --help)", problem.what())});
+  }
+  const auto log = spdlog::stderr_color_mt("eyepoint-bench");
+  log->set_pattern("[%H:%M:%S.%e] %^%l%$ %v");
+  spdlog::set_default_logger(log);
+  spdlog::set_level(spdlog::level::from_str(args.logLevel));
+  if (const Result<void> done = measure(args); !done) return complain(done.error());
+  return 0;
+}
