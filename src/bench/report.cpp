@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -37,6 +38,11 @@ std::string machineLine() {
 
 std::string commitLine() {
   return EYE_COMMIT;
+}
+
+std::string loadLine() {
+  double load = 0;
+  return getloadavg(&load, 1) == 1 ? fmt::format("{:.1f}", load) : "unknown";
 }
 
 std::string reportJson(const Report& report) {

@@ -59,6 +59,7 @@ struct Report {
 // "AMD EPYC ..., 2 cores", and the commit that was configured.
 std::string machineLine();
 std::string commitLine();
+std::string loadLine();  // of the last minute: what else the machine does
 
 std::string reportJson(const Report& report);
 std::string reportHtml(const Report& report);

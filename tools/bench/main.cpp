@@ -91,8 +91,10 @@ Result<void> measure(const Arguments& args) {
       if (line.isDue())
         line.print(fmt::format("{} {} {:.0f} %: {}", progressBar(share), suite->name, 100 * share, what));
     };
+    const std::string before = loadLine();
     Result<SuiteReport> done = suite->run(options);
     if (!done) return tl::unexpected(done.error());
+    done->notes.push_back(fmt::format("Load average of the machine: {} before, {} after.", before, loadLine()));
     report.device = done->device;
     report.suites.push_back(std::move(*done));
     if (const Result<void> written = writeReport(report, args.out); !written) return written;

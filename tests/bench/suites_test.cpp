@@ -1,0 +1,98 @@
+// Every suite from its start to its report, over a small database.
+#include <set>
+
+#include <spdlog/spdlog.h>
+#include <catch2/catch.hpp>
+
+#include "bench/small_database.h"
+#include "bench/suites.h"
+#include "render/renderer.h"
+
+namespace eye {
+namespace {
+
+std::optional<SuiteReport> quickly(Result<SuiteReport> (*suite)(const SuiteOptions&)) {
+  const auto devices = Renderer::listDevices();
+  if (!devices || devices->empty()) {
+    WARN("no Vulkan device: not tested");
+    return std::nullopt;
+  }
+  double lastShare = -1;
+  SuiteOptions options;
+  options.terrain = smallDatabase();
+  options.quick = true;
+  options.progress = [&](const std::string&, double share) {
+    CHECK((share >= lastShare && share < 1));
+    lastShare = share;
+  };
+  Result<SuiteReport> report = suite(options);
+  INFO((report ? std::string() : report.error().message));
+  REQUIRE(report);
+  CHECK(lastShare > 0);
+  CHECK_FALSE(report->device.empty());
+  return *report;
+}
+
+void requireKeys(const nlohmann::ordered_json& object, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) {
+    INFO(key);
+    REQUIRE(object.contains(key));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Suite culling: every scheme at every height, and the published figures where there are any") {
+  const auto report = quickly(runCullingSuite);
+  if (!report) return;
+  requireKeys(report->summary, {"saved_cpu_low_level", "worst_loss", "pass_ms"});
+  CHECK(report->rows.size() == 2 * 2 * 4);  // places, altitudes, schemes
+  for (const auto& row : report->rows) {
+    requireKeys(row, {"altitude_ft", "scheme", "size", "place", "triangles", "vertices", "fps", "frame_ms", "cpu_ms",
+                      "published_triangles", "published_fps"});
+    CHECK(row["cpu_ms"] > 0);
+    CHECK(row["triangles"] > 0);
+    CHECK(row["visible_share"] > 0);
+    CHECK(row["visible_share"] <= 1);
+    CHECK(row["published_fps"].is_number() == (row["altitude_ft"] == 2000 && row["scheme"] != "dynamic_320x240"));
+  }
+  for (size_t i = 0; i < report->rows.size(); i += 4) {  // none, frustum, dynamic, with the pass always
+    CHECK(report->rows[i]["scheme"] == "none");
+    CHECK(report->rows[i]["triangles"] > report->rows[i + 1]["triangles"]);
+    CHECK(report->rows[i + 1]["triangles"] >= report->rows[i + 2]["triangles"]);
+    CHECK(report->rows[i + 1]["triangles"] > report->rows[i + 3]["triangles"]);
+    CHECK(report->rows[i + 3]["depth_map"] == "320x240");
+  }
+  CHECK(report->rows[6]["published_triangles"] == 2176);
+}
+
+TEST_CASE("Suite selector: every fixed choice and both modes on the same frames") {
+  const auto report = quickly(runSelectorSuite);
+  if (!report) return;
+  requireKeys(report->summary, {"adaptive_regret", "paper_regret", "worst_10s_loss", "frames"});
+  std::set<std::string> modes;
+  for (const auto& row : report->rows) {
+    requireKeys(row, {"mode", "cpu_ms", "regret", "used"});
+    modes.insert(row["mode"].get<std::string>());
+    CHECK(row["cpu_ms"] > 0);
+    double shares = 0;
+    for (const auto& [name, share] : row["used"].items()) shares += share.get<double>();
+    CHECK(shares == Approx(1));
+  }
+  CHECK(modes == std::set<std::string>{"off", "320x240", "400x300", "640x480", "800x600", "adaptive", "paper"});
+  CHECK(report->rows[1]["used"]["320x240"] == 1.0);  // a fixed choice uses nothing else
+  CHECK(report->rows[0]["used"]["off"] == 1.0);
+  CHECK(report->rows[0]["worst_10s_loss"] == 0.0);  // off against itself
+}
+
+TEST_CASE("A suite over no database says so") {
+  SuiteOptions options;
+  options.terrain = "/nowhere/none.eyt";
+  for (const Suite& suite : suites()) {
+    const auto report = suite.run(options);
+    REQUIRE_FALSE(report);
+    CHECK(report.error().message.find("/nowhere/none.eyt") != std::string::npos);
+  }
+}
+
+}  // namespace eye
