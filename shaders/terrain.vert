@@ -17,8 +17,9 @@ layout(location = EYE_AT_OUTWARD) in vec3 inOutward_ecef[4];
 layout(location = EYE_AT_TEXTURE_MAP) in vec4 inTextureMap;
 
 layout(location = 0) out vec2 outTexture;
-layout(location = 1) out vec4 outLight;  // sunlight, skylight, haze per metre (base 2), how far the haze is lit
-layout(location = 2) flat out uint outLayer;
+layout(location = 1) out vec3 outLight;  // of sun and sky, on the ground
+layout(location = 2) out vec2 outHaze;   // optical depth per metre, base 2; how far the haze is lit
+layout(location = 3) flat out uint outLayer;
 
 vec3 normalFromOctahedral(vec2 o) {
   vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
@@ -48,10 +49,10 @@ void main() {
   float lit = skyLit(sunHeight);
   // The sun's disc rises over two degrees; the sky lights a slope by how much of it the slope sees; moon and stars
   // leave a third of that, so that terrain stays faintly visible.
-  outLight.x = max(dot(normal, frame.sun_ecef.xyz), 0.0) * smoothstep(-0.02, 0.06, sunHeight);
-  outLight.y = (0.6 + 0.4 * dot(normal, up)) * (0.3 + 0.7 * lit);
-  outLight.z = hazePerMetre(position_ecef) * EYE_LOG2_E;
-  outLight.w = lit;
+  float sunlight = max(dot(normal, frame.sun_ecef.xyz), 0.0) * smoothstep(-0.02, 0.06, sunHeight);
+  float skylight = (0.6 + 0.4 * dot(normal, up)) * (0.25 + 0.75 * lit);
+  outLight = frame.sunLight.rgb * sunlight + frame.skyLight.rgb * skylight;
+  outHaze = vec2(hazePerMetre(position_ecef) * EYE_LOG2_E, lit);
   outTexture = inParam * inTextureMap.xy + inTextureMap.zw;
   outLayer = inLayer;
 }

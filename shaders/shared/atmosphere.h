@@ -17,8 +17,8 @@ float skyColumn(float rise) {
   return rise >= 0.0 ? outwards : max(through, 0.0);
 }
 
-// How far the sky over a place is lit, by the sine of the sun's height there: day 1, the end of dusk 0.
-float skyLit(float sunHeight) { return smoothstep(-0.25, 0.10, sunHeight); }
+// How far the sky over a place is lit, by the sine of the sun's height there: by day 1, after dusk by stars and moon.
+float skyLit(float sunHeight) { return mix(EYE_NIGHT_SKY, 1.0, smoothstep(-0.25, 0.10, sunHeight)); }
 
 // Brightness of the glow by the cosine between ray and sun: a wide and a narrow lobe.
 float glowShape(float towardsSun) {
@@ -29,7 +29,7 @@ float glowShape(float towardsSun) {
 
 // The colour that haze has, and the sky at the horizon: distant ridges melt into it.
 vec3 hazeColour(float towardsSun, float lit) {
-  return (frame.horizon.rgb + frame.horizonGlow.rgb * glowShape(towardsSun)) * lit + frame.night.rgb;
+  return (frame.horizon.rgb + frame.horizonGlow.rgb * glowShape(towardsSun)) * lit;
 }
 
 vec3 skyColour(vec3 ray_eye) {
@@ -44,7 +44,7 @@ vec3 skyColour(vec3 ray_eye) {
   // digits that 1 - cos would lose in floats.
   vec3 offset = ray_eye - frame.sun_eye.xyz;
   float disc = 1.0 - smoothstep(1.6e-5, 2.2e-5, dot(offset, offset));
-  return frame.deepSky.rgb * lit * scattered + (frame.glow.rgb * (glowShape(towardsSun) * lit) + frame.night.rgb) * scattered.g +
+  return lit * (frame.deepSky.rgb * scattered + frame.glow.rgb * (glowShape(towardsSun) * scattered.g)) +
          frame.glow.w * disc * (1.0 - 0.7 * scattered.r);
 }
 

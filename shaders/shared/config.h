@@ -72,6 +72,8 @@
 #define EYE_AIR_TOP_M 60000.0
 // Column of air along a level ray over that of a vertical one, from the ground: sqrt(pi R / 2 H).
 #define EYE_LEVEL_COLUMN 35.4
+// Light of the sky by night, as displayed, over that of the day.
+#define EYE_NIGHT_SKY 0.07
 #define EYE_EARTH_RADIUS_M 6371000.0
 #define EYE_LOG2_E 1.44269504
 

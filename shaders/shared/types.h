@@ -43,11 +43,10 @@ struct FrameData {
   vec4 glow;          // colour added to it towards the sun; w: brightness of the sun's disc
   vec4 horizon;       // deepSky as the horizon shows it
   vec4 horizonGlow;   // glow as the horizon shows it
-  vec4 night;         // what the sky has even at night
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 64 + 13 * 16 && offsetof(FrameData, ray_eye) == 64);
+static_assert(sizeof(FrameData) == 64 + 12 * 16 && offsetof(FrameData, ray_eye) == 64);
 }  // namespace eye::shader
 #endif
 

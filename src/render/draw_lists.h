@@ -1,5 +1,5 @@
-// The draws of a frame in memory that the GPU reads: one record a chunk, one indirect command for its surface and one
-// for each skirt that it needs. Owner thread: render.
+// The draws of a frame in memory that the GPU reads: an indirect command and a record for each surface and for each
+// skirt that it needs, since skirts of one chunk are not equally deep. Owner thread: render.
 #pragma once
 
 #include "gpu/memory.h"

@@ -48,18 +48,16 @@ void setLight(double rise, double air, double hazeDepth, shader::FrameData& fram
   frame.skyLight = vec4(0.36f, 0.39f, 0.45f, 0.0f);
 
   const double low = (1 - smoothstep(0.0, 0.35, std::abs(rise))) * air;
-  const glm::dvec3 byDay(0.76, 0.85, 0.95), byDusk(0.66, 0.60, 0.66);
+  const glm::dvec3 byDay(0.80, 0.90, 1.02), byDusk(0.70, 0.65, 0.74);
   const glm::dvec3 deepSky = glm::mix(byDay, byDusk, low);
   const glm::dvec3 glow = glm::mix(glm::dvec3(0.22, 0.19, 0.13), glm::dvec3(0.50, 0.26, 0.06), low);
   const glm::dvec3 airDepth = kAirDepth * kDisplayed + hazeDepth;
   const glm::dvec3 atHorizon = 1.0 - glm::exp(-airDepth * double(EYE_LEVEL_COLUMN));
-  const glm::dvec3 night(0.05, 0.06, 0.10);
   frame.airDepth = vec4(vec3(airDepth), 0.0f);
   frame.deepSky = vec4(vec3(deepSky), 0.0f);
   frame.glow = vec4(vec3(glow), 1.0f);
   frame.horizon = vec4(vec3(deepSky * atHorizon), 0.0f);
   frame.horizonGlow = vec4(vec3(glow * atHorizon.g), 0.0f);
-  frame.night = vec4(vec3(night * atHorizon.g), 0.0f);
 }
 
 }  // namespace
@@ -107,7 +105,7 @@ shader::DrawData drawData(const ChunkDraw& draw, const Vec3d& eyeEcefM, int text
     data.eyeFractionM = vec3(eyeEcefM - ecefFromLattice(draw.originLattice, draw.stepM));
   }
   data.stepM = static_cast<float>(draw.stepM);
-  data.skirtDepthM = draw.skirtDepthM;
+  data.skirtDepthM = 0;  // the records of skirts have their own
   data.upEcef = draw.upEcef;
   data.textureLayer = draw.textureLayer;
   for (size_t side = 0; side < 4; ++side) data.outwardEcef[side] = vec4(draw.outwardEcef[side], 0.0f);

@@ -34,7 +34,7 @@ struct ChunkDraw {
   GpuChunk gpu;                        // firstIndex and indexCount: the surface's
   std::array<SkirtRange, 4> skirts{};  // by Side, offsets from gpu.firstIndex
   uint8_t skirtMask = 0;
-  float skirtDepthM = 0;
+  std::array<float, 4> skirtDepthM{};  // by Side
   LatticePoint originLattice{};
   double stepM = 1;
   OrientedBox box;                         // of the surface, what its clusters' bounds refer to

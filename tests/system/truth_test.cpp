@@ -1,8 +1,11 @@
 // The picture's geometry against rays cast on the source: the program draws, its distance map is judged pixel by pixel.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "raster/picture.h"
 #include "system/program.h"
@@ -21,15 +24,27 @@ std::string poseText(const EyePose& p) {
                      p.rollDeg);
 }
 
+// Draws frames of a still eye and leaves the last one's distance map in `map`.
+void draw(const std::string& database, const EyePose& pose, const std::string& map,
+          const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"--headless",     "--offline",
+                                     "--terrain",      database,
+                                     "--pose",         poseText(pose),
+                                     "--fov",          fmt::format("{}", kFovDeg),
+                                     "--size",         fmt::format("{}x{}", kWidth, kHeight),
+                                     "--distance-map", map,
+                                     "--log-level",    "error"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const ProgramRun run = runProgram("eyepoint", arguments);
+  INFO(poseText(pose) << "\n" << run.err);
+  REQUIRE(run.exitCode == 0);
+}
+
 // Draws, compares, prints one line, leaves a picture of the errors where the figures are not met.
 void checkPose(const std::string& name, const HeightGrid& grid, const std::string& database, const EyePose& pose) {
   const std::string map = testFile("truth/" + name + ".distance.tif");
-  const ProgramRun run =
-      runProgram("eyepoint", {"--headless", "--offline", "--terrain", database, "--pose", poseText(pose), "--fov",
-                              fmt::format("{}", kFovDeg), "--size", fmt::format("{}x{}", kWidth, kHeight), "--sse", "1",
-                              "--distance-map", map, "--log-level", "error"});
-  INFO(name << " " << poseText(pose) << "\n" << run.err);
-  REQUIRE(run.exitCode == 0);
+  draw(database, pose, map, {"--sse", "1"});
+  INFO(name << " " << poseText(pose));
   const RasterImage rendered = readRaster(map);
   REQUIRE(rendered.bands == 1);
   REQUIRE(rendered.widthPx == kWidth);
@@ -67,17 +82,49 @@ constexpr TatraPose kTatraPoses[] = {
     {"valley_50m", 49.2040, 20.0700, 50, 170, 5, 0},
 };
 
+EyePose poseOver(const HeightGrid& grid, const TatraPose& p) {
+  const double groundM = grid.heightM(grid.rowOf(p.latDeg), grid.columnOf(p.lonDeg));
+  return {{p.latDeg, p.lonDeg, groundM + p.aboveGroundM}, p.headingDeg, p.pitchDeg, p.rollDeg};
+}
+
+// Median over the frames of a statistics file but the first five, which load and settle.
+double medianOf(const std::string& statistics, const char* key) {
+  std::vector<double> values;
+  std::ifstream file(statistics);
+  for (std::string line; std::getline(file, line);) values.push_back(nlohmann::json::parse(line).at(key).get<double>());
+  REQUIRE(values.size() > 5);
+  values.erase(values.begin(), values.begin() + 5);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
 }  // namespace
+
+// Not a test: the table of docs/MEASUREMENTS.md. test_system "truth: time against error"
+TEST_CASE("truth: time against error", "[.]") {
+  const std::string database = carpathiaDatabase();
+  if (database.empty()) return;
+  const HeightGrid grid = HeightGrid::fromHgtFolder(testFile("carpathia"));
+  fmt::print("| view | `--sse` | triangles | wall ms | CPU ms | explained | median error | p99 error |\n");
+  for (const TatraPose& p : {kTatraPoses[0], kTatraPoses[3]}) {
+    const EyePose pose = poseOver(grid, p);
+    const TruthImage truth = castImage(grid, pose, kFovDeg, kWidth, kHeight);
+    for (const char* sse : {"8", "4", "2", "1", "0.5", "0.25"}) {
+      const std::string map = testFile("truth/table.tif"), statistics = testFile("truth/table.jsonl");
+      draw(database, pose, map, {"--sse", sse, "--frames", "45", "--redraw", "always", "--stats", statistics});
+      const Comparison result = compare(truth, readRaster(map).values);
+      fmt::print("| {} | {} | {:.0f} | {:.1f} | {:.1f} | {:.4f} % | {:.1e} | {:.1e} |\n", p.name, sse,
+                 medianOf(statistics, "triangles"), medianOf(statistics, "frame_ms"), medianOf(statistics, "cpu_ms"),
+                 100 * result.explainedShare(), result.medianError, result.p99Error);
+    }
+  }
+}
 
 TEST_CASE("truth: eight views of the Tatra") {
   const std::string database = carpathiaDatabase();
   if (database.empty()) return;
   static const HeightGrid grid = HeightGrid::fromHgtFolder(testFile("carpathia"));
-  for (const TatraPose& p : kTatraPoses) {
-    const double groundM = grid.heightM(grid.rowOf(p.latDeg), grid.columnOf(p.lonDeg));
-    checkPose(p.name, grid, database,
-              {{p.latDeg, p.lonDeg, groundM + p.aboveGroundM}, p.headingDeg, p.pitchDeg, p.rollDeg});
-  }
+  for (const TatraPose& p : kTatraPoses) checkPose(p.name, grid, database, poseOver(grid, p));
 }
 
 TEST_CASE("truth: a plain and a cone") {
