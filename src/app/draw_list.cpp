@@ -1,5 +1,7 @@
 #include "app/draw_list.h"
 
+#include <algorithm>
+
 namespace eye {
 
 void makeDrawList(const TerrainCache& cache, const Selection& selection, std::vector<ChunkDraw>& draws) {
@@ -16,7 +18,8 @@ void makeDrawList(const TerrainCache& cache, const Selection& selection, std::ve
     draw.gpu.indexCount = node.surfaceIndexCount;
     draw.skirts = node.skirts;
     draw.skirtMask = drawn.skirtMask;
-    draw.skirtDepthM = static_cast<float>(drawn.skirtDepthM);
+    std::ranges::transform(drawn.skirtDepthM, draw.skirtDepthM.begin(),
+                           [](double depthM) { return static_cast<float>(depthM); });
     draw.originLattice = node.meta.originLattice;
     draw.stepM = node.meta.stepM();
     draw.box = node.meta.box;

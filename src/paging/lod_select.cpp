@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kNearestM = 1e-3;  // an eye inside a box is this far from it, so that errors on screen stay finite
 constexpr uint32_t kAllPlanes = 31;
+constexpr uint32_t kNeverCull = 32;  // instead of planes: the horizon hides nothing either
 
 class Walk {
  public:
@@ -44,6 +45,23 @@ class Walk {
     }
   }
 
+  // A side beside which the columns double has two neighbours, and its skirt is as deep as both need: where one of them
+  // is seen the other counts as if it were, so that what is left out changes no skirt.
+  void reviveHalfSides() {
+    if (!culls_) return;
+    const size_t seen = out_.walked.size();
+    for (size_t i = 0; i < seen; ++i) {
+      const uint32_t node = out_.walked[i].node;
+      for (Side side : kSides) {
+        across_.clear();
+        forEachAcross(cache_, node, side, [&](uint32_t other) { across_.push_back(other); });
+        const auto culled = std::ranges::partition(across_, [&](uint32_t other) { return !isCulled(other); });
+        if (culled.size() == across_.size()) continue;
+        for (uint32_t other : culled) uncull(other);
+      }
+    }
+  }
+
   // How far under the ellipsoid the drawn terrain reaches between eye and horizon.
   double greatestDepthM() const { return greatestDepthM_; }
 
@@ -54,12 +72,13 @@ class Walk {
     const ChunkMeta& meta = node.meta;
     node.usedFrame = cache_.frame();
     ++out_.counts.considered;
-    if (culls_ && isOutside(meta, neighbourErrorM, planes)) {
+    const bool mayCull = culls_ && planes != kNeverCull;
+    if (mayCull && isOutside(meta, neighbourErrorM, planes)) {
       node.visit = Visit::outsideFrustum;
       ++out_.counts.frustumCulled;
       return;
     }
-    if (culls_ && horizon_.hides(meta, horizonTest_)) {
+    if (mayCull && horizon_.hides(meta, horizonTest_)) {
       node.visit = Visit::belowHorizon;
       ++out_.counts.horizonCulled;
       return;
@@ -85,7 +104,7 @@ class Walk {
     out_.walked.push_back({.node = index,
                            .distanceM = distanceM,
                            .skirtMask = 0,
-                           .skirtDepthM = 0,
+                           .skirtDepthM = {},
                            .textureNode = node.textureNode,
                            .textureScale = node.textureScale,
                            .textureOffset = node.textureOffset});
@@ -125,6 +144,18 @@ class Walk {
     }
   }
 
+  bool isCulled(uint32_t index) const {
+    const Visit visit = cache_.node(index).visit;
+    return visit == Visit::outsideFrustum || visit == Visit::belowHorizon;
+  }
+
+  void uncull(uint32_t index) {
+    if (!isCulled(index)) return;  // met twice
+    --out_.counts.considered;
+    --(cache_.node(index).visit == Visit::outsideFrustum ? out_.counts.frustumCulled : out_.counts.horizonCulled);
+    visit(index, kNeverCull, 0);
+  }
+
   TerrainCache& cache_;
   Selection& out_;
   const Horizon& horizon_;
@@ -134,6 +165,7 @@ class Walk {
   const FrustumPlanes planes_;
   const double pixelsPerRadian_, ssePx_, texelPx_;
   double greatestDepthM_ = 0;
+  std::vector<uint32_t> across_;
 };
 
 Horizon firstHorizon(const TerrainCache& cache, const View& view, const LodOptions& options) {
@@ -195,6 +227,7 @@ void selectChunks(TerrainCache& cache, const View& view, const LodOptions& optio
     Walk walk(cache, view, options, horizon, out);
     walk.fromRoots();
     walk.reviveBesideCoarse();
+    walk.reviveHalfSides();
     if (options.culling == CullingScheme::none || walk.greatestDepthM() <= horizon.depthM()) break;
     horizon = Horizon(view.eyeEcefM, walk.greatestDepthM());
     cache.beginFrame();

@@ -2,6 +2,7 @@
 // Pure: the same cache and view give the same selection. Owner thread: render.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,11 +22,11 @@ struct LodOptions {
 };
 
 struct DrawnChunk {
-  uint32_t node = 0;         // TerrainCache node
-  double distanceM = 0;      // eye to the chunk's box
-  uint8_t skirtMask = 0;     // bit (1 << Side): the neighbour there is not drawn at this level
-  double skirtDepthM = 0;    // own error and the largest neighbour's
-  uint32_t textureNode = 0;  // the chunk whose imagery it shows, and the affine map into its TileParam
+  uint32_t node = 0;                    // TerrainCache node
+  double distanceM = 0;                 // eye to the chunk's box
+  uint8_t skirtMask = 0;                // bit (1 << Side): the neighbour there is not drawn at this level
+  std::array<double, 4> skirtDepthM{};  // by Side: own error and the largest neighbour's there
+  uint32_t textureNode = 0;             // the chunk whose imagery it shows, and the affine map into its TileParam
   glm::vec2 textureScale{1.0f}, textureOffset{0.0f};
 };
 

@@ -186,7 +186,7 @@ TEST_CASE("skirts hang where the neighbour is of another level and nowhere else,
           const ChunkMeta& meta = cache.node(other->node).meta;
           if (meta.key.level() == key.level()) continue;
           differs = true;
-          REQUIRE(draw.skirtDepthM >= 1.0999 * (node.meta.geometricErrorM + meta.geometricErrorM));
+          REQUIRE(draw.skirtDepthM[static_cast<size_t>(side)] >= 1.0999 * (node.meta.geometricErrorM + meta.geometricErrorM));
         }
         INFO(key.name() << " side " << static_cast<int>(side));
         const bool hasSkirt = (draw.skirtMask & (1u << static_cast<unsigned>(side))) != 0;

@@ -167,7 +167,7 @@ TEST_CASE("a skirt closes the gap between edges of different height") {
   input.background = kMagenta;
   input.draws = draws;
   CHECK(backgroundPixels(draw(*renderer, input)) > 50);
-  for (ChunkDraw& chunk : draws) chunk.skirtDepthM = 8;
+  for (ChunkDraw& chunk : draws) chunk.skirtDepthM.fill(8);
   draws[0].skirtMask = 1 << static_cast<int>(Side::east);
   draws[1].skirtMask = 1 << static_cast<int>(Side::west);
   const FrameOutput closed = draw(*renderer, input);
