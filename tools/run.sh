@@ -39,7 +39,7 @@ bake_demo() {
   mkdir -p "$(dirname "$demo")"
   echo "Terrain: baking the embedded terrain into $demo (once, under a minute) ..."
   rm -f "$demo".baking*
-  "$bin/eyepoint-bake" demo --out "$demo.baking"
+  "$bin/eyepoint-bake" --log-level warn demo --out "$demo.baking"
   mv "$demo.baking" "$demo"
 }
 
