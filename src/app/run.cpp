@@ -138,8 +138,8 @@ void reportRun(const RunSummary& summary, double startupMs, const Options& optio
       : paging.damaged > 0
           ? std::string("the database is damaged; eyepoint-bake verify tells where")
           : fmt::format("--cache-ram {} is too small; give {}", options.cacheRamMiB, 2 * options.cacheRamMiB);
-  spdlog::warn("{} of {} frames are coarser than --sse {} asks, with up to {} chunks missing: {}",
-               summary.missingChunkFrames(), summary.frames(), options.ssePx, summary.mostMissing(), cure);
+  spdlog::warn("{} of {} frames drawn are coarser than --sse {} asks, with up to {} chunks missing: {}",
+               summary.missingChunkFrames(), summary.frameTimesMs().size(), options.ssePx, summary.mostMissing(), cure);
 }
 
 }  // namespace
