@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "paging/across.h"
 #include "paging/synthetic_forest.h"
 
 namespace eye {
@@ -186,7 +187,8 @@ TEST_CASE("skirts hang where the neighbour is of another level and nowhere else,
           const ChunkMeta& meta = cache.node(other->node).meta;
           if (meta.key.level() == key.level()) continue;
           differs = true;
-          REQUIRE(draw.skirtDepthM[static_cast<size_t>(side)] >= 1.0999 * (node.meta.geometricErrorM + meta.geometricErrorM));
+          REQUIRE(draw.skirtDepthM[static_cast<size_t>(side)] >=
+                  1.0999 * (node.meta.geometricErrorM + meta.geometricErrorM));
         }
         INFO(key.name() << " side " << static_cast<int>(side));
         const bool hasSkirt = (draw.skirtMask & (1u << static_cast<unsigned>(side))) != 0;
@@ -201,6 +203,37 @@ TEST_CASE("skirts hang where the neighbour is of another level and nowhere else,
   }
   CHECK(with > 500);
   CHECK(without > 500);
+}
+
+TEST_CASE("what is culled changes no skirt beside what is drawn") {
+  size_t compared = 0, halfSides = 0;
+  for (uint32_t seed = 0; seed < 200; ++seed) {
+    const View view = randomView(seed);
+    TerrainCache cache = makeRandomForest(seed, view);
+    const Selection whole = select(cache, view, CullingScheme::none);
+    std::map<uint32_t, DrawnChunk> uncut;
+    for (const DrawnChunk& draw : whole.draws) uncut[draw.node] = draw;
+    const Selection culled = select(cache, view, CullingScheme::frustum);
+    for (const DrawnChunk& draw : culled.draws) {
+      for (Side side : kSides) {
+        const auto s = static_cast<size_t>(side);
+        size_t across = 0, left = 0;
+        forEachAcross(cache, draw.node, side, [&](uint32_t other) {
+          const Visit visit = cache.node(other).visit;
+          ++across;
+          left += visit == Visit::outsideFrustum || visit == Visit::belowHorizon;
+        });
+        if (left == across) continue;  // all of the edge is out of sight
+        INFO("seed " << seed << ": " << cache.node(draw.node).meta.key.name() << " side " << s);
+        REQUIRE((draw.skirtMask >> s & 1) == (uncut.at(draw.node).skirtMask >> s & 1));
+        REQUIRE(draw.skirtDepthM[s] == uncut.at(draw.node).skirtDepthM[s]);
+        ++compared;
+        halfSides += across > 1;
+      }
+    }
+  }
+  CHECK(compared > 5000);
+  CHECK(halfSides > 50);
 }
 
 TEST_CASE("a gap beside a chunk that is drawn too coarsely is never left out with its neighbour") {
