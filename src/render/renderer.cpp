@@ -47,6 +47,17 @@ struct Renderer::Impl {
   void readTimes(FrameOutput& output);
 };
 
+namespace {
+
+// Pixels of the picture under a texel of the depth map, each way: lavapipe ends a shader's loops after 65,535 rounds.
+constexpr int kMostPixelsPerTexel = 128;
+
+glm::ivec2 usableMap(glm::ivec2 mapPx, glm::ivec2 picturePx) {
+  return glm::max(mapPx, (picturePx + (kMostPixelsPerTexel - 1)) / kMostPixelsPerTexel);
+}
+
+}  // namespace
+
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Renderer::~Renderer() {
@@ -154,6 +165,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     output.draws = counts.surfaces + counts.skirts;
     if (input.depthMapPx) {
       output.clusters = impl.cullLists->counts();
+      output.depthMapPx = impl.cullLists->params().mapPx;
       output.triangles = output.clusters.trianglesDrawn + counts.skirtTriangles;
       output.draws = output.clusters.drawn + counts.skirts;
     }
@@ -181,8 +193,9 @@ void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
 
 void Renderer::Impl::prepareCulling(const FrameInput& input) {
   const glm::ivec2 picturePx(input.view.widthPx, input.view.heightPx);
-  if (cullLists->reserve(*gpu, input.draws, picturePx, *input.depthMapPx)) cull->bind(*gpu, *pools, *cullLists);
-  cullLists->write(input.draws, input.view, scene->frame().clipFromEcef, *input.depthMapPx, input.freezeCulling);
+  const glm::ivec2 mapPx = usableMap(*input.depthMapPx, picturePx);
+  if (cullLists->reserve(*gpu, input.draws, picturePx, mapPx)) cull->bind(*gpu, *pools, *cullLists);
+  cullLists->write(input.draws, input.view, scene->frame().clipFromEcef, mapPx, input.freezeCulling);
 }
 
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {

@@ -78,6 +78,7 @@ struct FrameOutput {
   std::vector<PassTime> passes;
   uint64_t triangles = 0, vertices = 0, draws = 0;  // submitted; vertices: of the chunks drawn
   CullCounts clusters;                              // all 0 without a depth map
+  std::optional<glm::ivec2> depthMapPx;             // as it was used: at least a 128th of the picture each way
   std::span<const uint8_t> rgba;                    // width * height * 4, row 0 on top; empty unless asked for
   std::span<const float> depth;                     // reversed-Z: near / z, 0 where nothing is
   int widthPx = 0, heightPx = 0;                    // of this frame: a window may have been resized
