@@ -66,7 +66,16 @@ struct DepthLevel {
   int offset, finerOffset;  // into the pyramid's floats
 };
 
+// Push constants of the view of the depth pyramid: the level shown and where on the picture.
+struct DepthViewLevel {
+  vec2 cornerPx, texelsPerPx;
+  ivec2 size;
+  int offset;  // into the pyramid's floats
+  float nearM;
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(DepthViewLevel) == 32);
 static_assert(sizeof(ClusterRecord) == 24 && sizeof(CullChunk) == 64 && sizeof(CullCandidate) == 8);
 static_assert(sizeof(DrawCommand) == 20 && offsetof(DrawCommand, firstInstance) == 16);
 static_assert(sizeof(CullParams) == 36 + 4 + 16 + 12 + 4 * EYE_MAX_DEPTH_LEVELS);

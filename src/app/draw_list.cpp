@@ -25,6 +25,7 @@ void makeDrawList(const TerrainCache& cache, const Selection& selection, std::ve
     draw.box = node.meta.box;
     draw.upEcef = glm::cross(east, north);
     draw.outwardEcef = {-north, east, north, -east};
+    draw.level = node.meta.key.level();
     draw.textureLayer = static_cast<uint32_t>(texture.gpu.textureLayer);
     draw.textureScale = drawn.textureScale;
     draw.textureOffset = drawn.textureOffset;

@@ -114,6 +114,7 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   rendererOptions.monitor = options.monitor;
   rendererOptions.vsync = options.vsync;
   rendererOptions.gpuBudgetBytes = options.cacheGpuMiB << 20;
+  rendererOptions.debugViews = !options.headless || options.debugView.any();
   rendererOptions.textureSize = database->info().textureSize;
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(rendererOptions);
   if (!renderer) return tl::unexpected(renderer.error());
@@ -171,6 +172,14 @@ bool ImageGenerator::sameAsLast(const Lighting& lighting) const {
                     [](uint32_t node, const DrawnChunk& drawn) { return node == drawn.node; });
 }
 
+// Selection, visibility and depth map stay as they were drawn last. From the start of a run (--debug-view) only when
+// the terrain is there and visibility has settled: a late pass, a frame that draws early what it found, and one that
+// leaves out what that hides.
+bool ImageGenerator::isFrozen(const DebugView& debug) const {
+  constexpr int kSettling = 3;
+  return debug.freeze && drawn_ && (!options_.debugView.freeze || settledFrames_ >= kSettling);
+}
+
 // One frame, in order.
 Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool readDepth) {
   const TraceScope scope("frame");
@@ -182,35 +191,63 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   finished_ = host.finished;
   view_ = currentView(pose_);
   const Lighting lighting = currentLighting(host);
-  select();
+  // The keys switch what the options say.
+  const WindowKeys keys = renderer_->keys();
+  const bool overlay = (keys.overlay % 2 != 0) != options_.overlay;
+  const DebugView debug = switched(options_.debugView, keys);
+  const bool frozen = isFrozen(debug);
+  if (!frozen) select();
 
-  const bool overlay = renderer_->overlayWanted() != options_.overlay;  // F1 switches what the option says
   const bool seen = !renderer_->minimised() || readColour || readDepth;
-  const bool draw = seen && (options_.redrawAlways || overlay || !sameAsLast(lighting) ||
-                             readColour > drawn_->readColour || readDepth > drawn_->readDepth);
+  const bool draw =
+      seen && (options_.redrawAlways || overlay || debug.any() || !sameAsLast(lighting) || overlay != drawn_->overlay ||
+               debug != drawn_->debug || readColour > drawn_->readColour || readDepth > drawn_->readDepth);
   FrameRecord record;
   int64_t endedNs = 0;
   if (draw) {
-    record.depthMapPx = depthMap_.choose(pose_, pager_->cache(), selection_);
-    record.decision = depthMap_.decision();
-    makeDrawList(pager_->cache(), selection_, draws_);
+    if (frozen) {
+      record.depthMapPx = drawn_->depthMapPx;
+    } else {
+      record.depthMapPx = depthMap_.choose(pose_, pager_->cache(), selection_);
+      record.decision = depthMap_.decision();
+      makeDrawList(pager_->cache(), selection_, draws_);
+      settledFrames_ = selection_.counts.missing == 0 ? settledFrames_ + 1 : 0;
+    }
     FrameInput input{.view = view_,
                      .draws = draws_,
                      .lighting = lighting,
                      .background = options_.background,
                      .depthMapPx = record.depthMapPx,
+                     .freezeCulling = frozen,
+                     .tint = debug.tint,
+                     .showDepthMap = debug.depthMap,
                      .readColour = readColour,
                      .readDepth = readDepth,
                      .overlay = {}};
-    if (overlay) input.overlay = [this] { overlay_.draw(renderer_->device().name, sources_.description()); };
+    if (overlay || debug.any()) {
+      input.overlay = [&] {
+        if (overlay) overlay_.draw(renderer_->device().name, sources_.description());
+        if (debug.any()) drawDebugLegend(debug, frozen, record.depthMapPx, view_.widthPx);
+      };
+    }
     const Result<FrameOutput> output = renderer_->drawFrame(input);
     if (!output) return tl::unexpected(output.error());
     output_ = *output;
     record.clusters = output_.clusters;
-    depthMap_.learn(output_);
+    record.depthMapPx = output_.depthMapPx;
+    if (!frozen) depthMap_.learn(output_);
     endedNs = output_.completedNs;
     const PagingCounts paging = pager_->counts();
-    drawn_ = Drawn{view_, lighting, {}, paging.loaded, paging.evicted, readColour, readDepth};
+    drawn_ = Drawn{.view = view_,
+                   .lighting = lighting,
+                   .nodes = {},
+                   .loaded = paging.loaded,
+                   .evicted = paging.evicted,
+                   .readColour = readColour,
+                   .readDepth = readDepth,
+                   .overlay = overlay,
+                   .depthMapPx = record.depthMapPx,
+                   .debug = debug};
     for (const DrawnChunk& drawn : selection_.draws) drawn_->nodes.push_back(drawn.node);
   } else {
     endedNs = monotonicNs();

@@ -56,6 +56,7 @@ class ImageGenerator {
   View currentView(const Pose& pose) const;
   Lighting currentLighting(const SourceSample& host) const;
   void select();
+  bool isFrozen(const DebugView& debug) const;
   bool sameAsLast(const Lighting& lighting) const;
 
   Options options_;
@@ -64,6 +65,7 @@ class ImageGenerator {
   std::unique_ptr<Pager> pager_;  // after the renderer: it gives its chunks back to it
   DepthMapControl depthMap_;
   Overlay overlay_;
+  int settledFrames_ = 0;  // drawn behind one another with nothing missing
 
   uint64_t number_ = 0;
   Pose pose_;
@@ -79,7 +81,9 @@ class ImageGenerator {
     Lighting lighting;
     std::vector<uint32_t> nodes;
     uint64_t loaded = 0, evicted = 0;
-    bool readColour = false, readDepth = false;
+    bool readColour = false, readDepth = false, overlay = false;
+    std::optional<glm::ivec2> depthMapPx;
+    DebugView debug;
   };
   std::optional<Drawn> drawn_;
 };

@@ -99,6 +99,16 @@ void setDepthMap(Options& options, const std::string& text) {
   options.depthMapPx = *size;
 }
 
+void setDebugView(Options& options, const std::string& text) {
+  const std::optional<DebugView> view = debugViewOf(text);
+  if (!view)
+    throw CLI::ValidationError("--debug-view",
+                               fmt::format("'{}' is no debug view; give freeze, depth-map, and level or fate, with "
+                                           "commas between them",
+                                           text));
+  options.debugView = *view;
+}
+
 void setFrustum(Options& options, const std::string& text) {
   const auto n = splitNumbers(text, ',', 4);
   if (!n || (*n)[0] >= (*n)[1] || (*n)[2] >= (*n)[3] || std::abs((*n)[0]) >= 89.9 || std::abs((*n)[1]) >= 89.9 ||
@@ -285,6 +295,12 @@ void addDiagnosis(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
       ->group(group);
   app.add_option_function<std::string>(
+         "--debug-view", [&o](const std::string& t) { setDebugView(o, t); },
+         "What culling does: freeze what is drawn (F2), depth-map (F3), colours by level\n"
+         "or by fate (F4); several with commas")
+      ->type_name("V,...")
+      ->group(group);
+  app.add_option_function<std::string>(
          "--background", [&o](const std::string& t) { setBackground(o, t); },
          "A flat colour instead of sky and haze: shows holes")
       ->type_name("R,G,B")
@@ -377,6 +393,8 @@ ParsedOptions parseOptions(int argc, const char* const* argv) {
   Options& options = parsed.options;
   CLI::App app{"Eyepoint draws a flight simulator's out-the-window view from a terrain database.", "eyepoint"};
   app.footer(
+      "Keys: F1 statistics, F2 freezes culling, F3 depth map, F4 colours by level, by fate, F11 full screen, Esc "
+      "quits\n\n"
       "Examples:\n"
       "  eyepoint                                                    a tour of the embedded terrain in a window\n"
       "  eyepoint --terrain alps.eyt --pose 45.98,7.66,4000,200,-10,0\n"

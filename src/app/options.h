@@ -7,6 +7,7 @@
 
 #include <glm/glm.hpp>
 
+#include "app/debug_view.h"
 #include "base/error.h"
 #include "control/selector_rules.h"
 #include "paging/lod_select.h"
@@ -59,6 +60,7 @@ struct Options {
 
   // Device and diagnosis.
   bool listDevices = false, validate = false, overlay = false;
+  DebugView debugView;
   std::string device, logLevel = "info";
 
   std::string settingsLine() const;  // for the summary: what was in force, one line

@@ -55,7 +55,7 @@ void Overlay::draw(const std::string& device, const std::string& source) const {
   if (r.hostAgeMs >= 0)
     line("host", "%.0f packets, %.0f rejected, age %.1f ms", static_cast<double>(r.host.packets),
          static_cast<double>(r.host.rejected), r.hostAgeMs);
-  ImGui::TextDisabled("F1 statistics  F11 full screen  Esc quit");
+  ImGui::TextDisabled("F1 statistics  F2 freeze culling  F3 depth map\nF4 level, fate  F11 full screen  Esc quit");
   ImGui::End();
 }
 

@@ -70,7 +70,10 @@ void Window::onMinimise(GLFWwindow* handle, int minimised) {
 void Window::onKey(GLFWwindow* handle, int key, int, int action, int) {
   if (action != GLFW_PRESS) return;
   Window& window = *static_cast<Window*>(glfwGetWindowUserPointer(handle));
-  if (key == GLFW_KEY_F1) window.overlayWanted_ = !window.overlayWanted_;
+  window.keys_.overlay += key == GLFW_KEY_F1;
+  window.keys_.freeze += key == GLFW_KEY_F2;
+  window.keys_.depthMap += key == GLFW_KEY_F3;
+  window.keys_.tint += key == GLFW_KEY_F4;
   if (key == GLFW_KEY_F11) window.toggleFullscreen();
   if (key == GLFW_KEY_ESCAPE) glfwSetWindowShouldClose(handle, GLFW_TRUE);
 }

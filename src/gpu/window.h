@@ -1,10 +1,11 @@
-// A GLFW window and its keys: F1 overlay, F11 fullscreen, Escape. Owner thread: main, as GLFW demands.
+// A GLFW window and its keys: F1 to F4 are counted, F11 fullscreen, Escape. Owner thread: main, as GLFW demands.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "base/error.h"
+#include "gpu/window_keys.h"
 
 struct GLFWwindow;
 
@@ -26,7 +27,7 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   bool poll();  // false when the user closed it
-  bool overlayWanted() const { return overlayWanted_; }
+  const WindowKeys& keys() const { return keys_; }
   bool minimised() const { return minimised_; }
   // Of what is drawn into; 0 while it is minimised.
   void sizePx(int& widthPx, int& heightPx) const;
@@ -40,7 +41,8 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   int monitor_ = 0;
-  bool overlayWanted_ = false, minimised_ = false;
+  WindowKeys keys_;
+  bool minimised_ = false;
   int windowedX_ = 0, windowedY_ = 0, windowedWidth_ = 0, windowedHeight_ = 0;  // where to return from fullscreen
 };
 

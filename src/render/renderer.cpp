@@ -7,6 +7,7 @@
 #include "gpu/swapchain.h"
 #include "gpu/timestamps.h"
 #include "render/cull_pass.h"
+#include "render/debug_views.h"
 #include "render/frame_data.h"
 #include "render/overlay.h"
 #include "render/scene_pass.h"
@@ -27,6 +28,7 @@ struct Renderer::Impl {
   std::unique_ptr<CullLists> cullLists;
   std::unique_ptr<CullPass> cull;
   std::unique_ptr<ScenePass> scene;
+  std::unique_ptr<DebugViews> debug;  // null unless the options ask for it
   std::unique_ptr<Overlay> overlay;
   std::unique_ptr<Timestamps> timestamps;
   Targets targets;
@@ -90,12 +92,16 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     const std::string cachePath = pipelineCachePath(device);
     impl->cache = loadPipelineCache(device, cachePath);
     GLFWwindow* window = options.window ? impl->window->handle() : nullptr;
-    impl->scene = std::make_unique<ScenePass>(device, impl->cache, impl->colourFormat());
+    impl->scene = std::make_unique<ScenePass>(device, impl->cache, impl->colourFormat(), options.debugViews);
     impl->lists = std::make_unique<DrawLists>(device);
     impl->cullLists = std::make_unique<CullLists>(device);
     impl->cull = std::make_unique<CullPass>(device, impl->cache);
     impl->cull->bind(device, *impl->pools, *impl->cullLists);
     runOnce(device, [&](const vk::raii::CommandBuffer& commands) { impl->cull->recordWarmUp(commands); });
+    if (options.debugViews) {
+      impl->debug = std::make_unique<DebugViews>(device, impl->cache, impl->colourFormat());
+      impl->debug->bind(device, *impl->cullLists);
+    }
     impl->overlay = std::make_unique<Overlay>(device, impl->cache, impl->colourFormat(), window);
     impl->timestamps = std::make_unique<Timestamps>(device);
     impl->scene->bindTextures(device, impl->pools->textures());
@@ -149,6 +155,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     impl.lists->reserve(*impl.gpu, input.draws.size());
     impl.scene->frame() = frameData(input);
     const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
+    if (impl.debug) impl.debug->prepare(*impl.gpu, input, *impl.pools, *impl.cullLists, impl.options.textureSize);
     if (input.depthMapPx) impl.prepareCulling(input);
     std::optional<uint32_t> shown;
     if (impl.swapchain != nullptr) shown = impl.swapchain->held();
@@ -194,12 +201,15 @@ void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
 void Renderer::Impl::prepareCulling(const FrameInput& input) {
   const glm::ivec2 picturePx(input.view.widthPx, input.view.heightPx);
   const glm::ivec2 mapPx = usableMap(*input.depthMapPx, picturePx);
-  if (cullLists->reserve(*gpu, input.draws, picturePx, mapPx)) cull->bind(*gpu, *pools, *cullLists);
+  if (cullLists->reserve(*gpu, input.draws, picturePx, mapPx)) {
+    cull->bind(*gpu, *pools, *cullLists);
+    if (debug) debug->bind(*gpu, *cullLists);
+  }
   cullLists->write(input.draws, input.view, scene->frame().clipFromEcef, mapPx, input.freezeCulling);
 }
 
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
-  scene->begin(commands, targets, false, input.background);
+  scene->begin(commands, targets, ScenePass::Pass::first, input.background);
   scene->drawTerrain(commands, *gpu, *pools, lists->draws(), lists->commands(), 0, counts.surfaces + counts.skirts);
   if (!input.background) scene->drawSky(commands);
   scene->end(commands);
@@ -214,7 +224,7 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
   };
   cull->recordEarly(commands, *cullLists);
   timestamps->mark(commands, "cull_early");
-  scene->begin(commands, targets, false, input.background);
+  scene->begin(commands, targets, ScenePass::Pass::first, input.background);
   draw(cullLists->earlyBuffer(), 0, cullLists->candidateCount());
   scene->end(commands);
   timestamps->mark(commands, "early");
@@ -224,7 +234,7 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
     cull->recordLate(commands, *cullLists);
     timestamps->mark(commands, "cull_late");
   }
-  scene->begin(commands, targets, true, input.background);
+  scene->begin(commands, targets, ScenePass::Pass::goesOn, input.background);
   if (!input.freezeCulling) draw(cullLists->lateBuffer(), 0, cullLists->candidateCount());
   draw(lists->commands(), counts.surfaces, counts.skirts);
   if (!input.background) scene->drawSky(commands);
@@ -243,6 +253,7 @@ void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, s
   } else {
     recordScene(input, counts);
   }
+  if (debug) debug->record(commands, *gpu, input, *scene, *pools, targets, *cullLists, *timestamps);
   if (input.overlay) {
     overlay->record(commands, targets, input.overlay);
     timestamps->mark(commands, "overlay");
@@ -343,8 +354,8 @@ bool Renderer::pollWindow() {
   return impl_->window == nullptr || impl_->window->poll();
 }
 
-bool Renderer::overlayWanted() const {
-  return impl_->window != nullptr && impl_->window->overlayWanted();
+WindowKeys Renderer::keys() const {
+  return impl_->window != nullptr ? impl_->window->keys() : WindowKeys{};
 }
 
 bool Renderer::minimised() const {

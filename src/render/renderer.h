@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "geo/view.h"
 #include "gpu/device_description.h"
+#include "gpu/window_keys.h"
 #include "paging/terrain_cache.h"
 #include "shared/cull_types.h"
 
@@ -28,7 +29,12 @@ struct RendererOptions {
   bool vsync = true;
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
   int textureSize = 128;                          // of the terrain database
+  bool debugViews = false;  // FrameInput's tint and showDepthMap work
 };
+
+// Colours over the terrain, for looking at culling: by level of detail, or by what became of each cluster in the last
+// frame with a depth map; the latter draws all clusters of the list, hidden ones too.
+enum class Tint { none, level, fate };
 
 struct ChunkDraw {
   GpuChunk gpu;                        // firstIndex and indexCount: the surface's
@@ -40,6 +46,7 @@ struct ChunkDraw {
   OrientedBox box;                         // of the surface, what its clusters' bounds refer to
   glm::vec3 upEcef{};                      // at the chunk's centre
   std::array<glm::vec3, 4> outwardEcef{};  // by Side: horizontal, away from the chunk, for the skirts' flare
+  int level = 0;                           // of detail, for its tint
   uint32_t textureLayer = 0;
   glm::vec2 textureScale{1.0f}, textureOffset{0.0f};
 };
@@ -57,6 +64,8 @@ struct FrameInput {
   // Occlusion culling with a depth map of this size, see CullPass; nothing: every draw as it is.
   std::optional<glm::ivec2> depthMapPx;
   bool freezeCulling = false;  // with depthMapPx: draws the clusters that the last frame not frozen found visible
+  Tint tint = Tint::none;
+  bool showDepthMap = false;  // and its pyramid, over the picture; with depthMapPx
   bool readColour = false, readDepth = false;
   std::function<void()> overlay;  // Dear ImGui calls; empty: none
 };
@@ -118,9 +127,9 @@ class Renderer final : public GpuStore {
   // Shows the last frame again without drawing it (a window that was covered), as drawFrame does.
   void presentAgain();
 
-  // The window: false when the user closed it. Handles F1 (overlay), F11 (fullscreen), Escape.
+  // The window: false when the user closed it. Handles F11 (fullscreen) and Escape, counts F1 to F4.
   bool pollWindow();
-  bool overlayWanted() const;
+  WindowKeys keys() const;  // none without a window
   bool minimised() const;
   int widthPx() const;
   int heightPx() const;

@@ -7,6 +7,8 @@
 #include "spirv/sky_frag.h"
 #include "spirv/sky_vert.h"
 #include "spirv/terrain_frag.h"
+#include "spirv/terrain_tint_frag.h"
+#include "spirv/terrain_tint_vert.h"
 #include "spirv/terrain_vert.h"
 
 namespace eye {
@@ -58,6 +60,18 @@ PipelineSpec terrainSpec() {
   return spec;
 }
 
+// The same records; the fourth numbers beside the skirts' directions are the tint.
+PipelineSpec tintedSpec() {
+  PipelineSpec spec = terrainSpec();
+  spec.vertexSpirv = k_terrain_tint_vert;
+  spec.fragmentSpirv = k_terrain_tint_frag;
+  for (auto& attribute : spec.attributes)
+    if (attribute.location >= EYE_AT_OUTWARD && attribute.location < EYE_AT_OUTWARD + 4)
+      attribute.format = vk::Format::eR32G32B32A32Sfloat;
+  spec.cull = vk::CullModeFlagBits::eNone;
+  return spec;
+}
+
 PipelineSpec skySpec() {
   PipelineSpec spec;
   spec.vertexSpirv = k_sky_vert;
@@ -68,7 +82,8 @@ PipelineSpec skySpec() {
 
 }  // namespace
 
-ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat) {
+ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat,
+                     bool withTints) {
   frame_ = createBuffer(gpu, sizeof(shader::FrameData), vk::BufferUsageFlagBits::eUniformBuffer, MemoryUse::upload);
   sampler_ = createSampler(gpu);
   setLayout_ = createSetLayout(gpu);
@@ -85,6 +100,7 @@ ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
     return createPipeline(gpu, cache, spec);
   };
   terrain_ = make(terrainSpec());
+  if (withTints) tinted_ = make(tintedSpec());
   sky_ = make(skySpec());
   const vk::DescriptorBufferInfo frame(*frame_.buffer, 0, VK_WHOLE_SIZE);
   gpu.device.updateDescriptorSets(vk::WriteDescriptorSet(*set_, EYE_BIND_FRAME, 0, Type::eUniformBuffer, {}, frame),
@@ -97,9 +113,9 @@ void ScenePass::bindTextures(const GpuDevice& gpu, const GpuImage& textures) {
       vk::WriteDescriptorSet(*set_, EYE_BIND_TEXTURES, 0, Type::eCombinedImageSampler, info), nullptr);
 }
 
-void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& targets, bool goesOn,
+void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass,
                       const std::optional<glm::vec3>& background) const {
-  if (goesOn) {
+  if (pass != Pass::first) {
     const std::array barriers{imageBarrier(targets.colour, usageColourTarget(), usageColourTarget()),
                               imageBarrier(targets.depth, usageDepthTarget(), usageDepthTarget())};
     recordBarriers(commands, barriers);
@@ -114,6 +130,7 @@ void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& ta
   const vk::Rect2D all({0, 0}, {static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx)});
   vk::RenderingAttachmentInfo colour, depth;
   colour.setImageView(*targets.colour.view).setImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
+  const bool goesOn = pass == Pass::goesOn;
   colour.setLoadOp(goesOn ? Load::eLoad : background ? Load::eClear : Load::eDontCare);
   if (background) colour.setClearValue(vk::ClearColorValue(background->r, background->g, background->b, 1.0f));
   depth.setImageView(*targets.depth.view).setImageLayout(vk::ImageLayout::eDepthAttachmentOptimal);
@@ -130,7 +147,18 @@ void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& ta
 
 void ScenePass::drawTerrain(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
                             const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first, uint32_t count) const {
-  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *terrain_);
+  drawWith(terrain_, commands, gpu, pools, draws, indirect, first, count);
+}
+
+void ScenePass::drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
+                           const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t count) const {
+  drawWith(tinted_, commands, gpu, pools, draws, indirect, 0, count);
+}
+
+void ScenePass::drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::CommandBuffer& commands,
+                         const GpuDevice& gpu, const ChunkPools& pools, const GpuBuffer& draws,
+                         const GpuBuffer& indirect, uint32_t first, uint32_t count) const {
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline);
   commands.bindVertexBuffers(0, {pools.vertexBuffer(), *draws.buffer}, {0, 0});
   commands.bindIndexBuffer(pools.indexBuffer(), 0, vk::IndexType::eUint16);
   constexpr uint32_t kStride = sizeof(vk::DrawIndexedIndirectCommand);

@@ -42,6 +42,10 @@ Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
   };
   auto drawn = renderer.drawFrame(input);
   input.depthMapPx = glm::ivec2(32, 24);
+  if (options.debugViews) {
+    input.tint = Tint::level;
+    input.showDepthMap = true;
+  }
   if (drawn) drawn = renderer.drawFrame(input);
   renderer.release(*gpu);
   if (!drawn) return tl::unexpected(drawn.error());

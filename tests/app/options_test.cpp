@@ -50,6 +50,16 @@ TEST_CASE("the command line sets what it says") {
   CHECK(o.hosts == std::vector<std::string>{"pose://1,2,3,4,5,6"});
 }
 
+TEST_CASE("debug views are words with commas, and keys switch them") {
+  const ParsedOptions parsed = parse({"--debug-view", "freeze,fate"});
+  REQUIRE_FALSE(parsed.exitStatus);
+  const DebugView view = parsed.options.debugView;
+  CHECK(view == DebugView{.freeze = true, .depthMap = false, .tint = Tint::fate});
+  CHECK(switched(view, {.freeze = 1, .depthMap = 3, .tint = 1}) == DebugView{.depthMap = true});
+  CHECK(switched({}, {.tint = 4}) == DebugView{.tint = Tint::level});
+  CHECK_FALSE(parse({}).options.debugView.any());
+}
+
 TEST_CASE("hosts may be given again") {
   const ParsedOptions parsed = parse({"--host", "demo://", "--host", "native-fdm://:5550"});
   REQUIRE_FALSE(parsed.exitStatus);
@@ -80,6 +90,9 @@ TEST_CASE("bad usage is one line and exit status 2") {
                                                   {"--background", "nan,0,0"},
                                                   {"--background=-0.1,0,0"},
                                                   {"--redraw", "never"},
+                                                  {"--debug-view", "all"},
+                                                  {"--debug-view", "freeze,"},
+                                                  {"--debug-view", "level,fate"},
                                                   {"--colour"},
                                                   {"stray"},
                                                   {"--pose", "1,2,3,4,5,6", "--host", "demo://"},

@@ -71,7 +71,7 @@ TEST_CASE("a window shows frames through a change of size, validation clean") {
   REQUIRE(renderer != nullptr);
   CHECK(renderer->pollWindow());
   CHECK(renderer->widthPx() == 320);
-  CHECK_FALSE(renderer->overlayWanted());
+  CHECK(renderer->keys().overlay == 0);
   const Pose pose{{48.8, 20.0, 3000}, 0, -8, 0};
   const auto draws = mountains(*renderer, 3, ecefFromGeodetic(pose.position));
   // The last size is not the window's: the picture is scaled into it, as for a frame while it is being resized.
