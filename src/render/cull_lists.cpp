@@ -30,17 +30,7 @@ bool grow(const GpuDevice& gpu, size_t count, size_t elementBytes, vk::BufferUsa
 
 }  // namespace
 
-PyramidLayout pyramidLayout(glm::ivec2 mapPx) {
-  PyramidLayout layout;
-  for (glm::ivec2 size = mapPx;; size = (size + 1) / 2) {
-    EYE_CHECK(layout.levels < EYE_MAX_DEPTH_LEVELS);
-    layout.offset[static_cast<size_t>(layout.levels++)] = static_cast<int32_t>(layout.texels);
-    layout.texels += static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
-    if (size == glm::ivec2(1)) return layout;
-  }
-}
-
-CullLists::CullLists(const GpuDevice& gpu) {
+CullLists::CullLists(const GpuDevice& gpu, bool pyramidOnHost) : pyramidOnHost_(pyramidOnHost) {
   params_ = createBuffer(gpu, sizeof(shader::CullParams), Use::eStorageBuffer, MemoryUse::upload);
   params_.as<shader::CullParams>()[0] = {};
   reserve(gpu, {}, {1, 1}, {1, 1});
@@ -64,9 +54,9 @@ bool CullLists::reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, 
   }
   const auto pixels = static_cast<size_t>(picturePx.x) * static_cast<size_t>(picturePx.y);
   made |= grow(gpu, pixels, sizeof(float), Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc,
-               MemoryUse::device, depthCapacity_, depth_);
+               pyramidOnHost_ ? MemoryUse::readBack : MemoryUse::device, depthCapacity_, depth_);
   made |= grow(gpu, pyramidLayout(mapPx).texels, sizeof(float), Use::eStorageBuffer | Use::eTransferSrc,
-               MemoryUse::device, pyramidCapacity_, pyramid_);
+               pyramidOnHost_ ? MemoryUse::upload : MemoryUse::device, pyramidCapacity_, pyramid_);
   const auto sides = static_cast<size_t>(mapPx.x) + static_cast<size_t>(mapPx.y);
   if (grow(gpu, sides, sizeof(glm::ivec2), Use::eStorageBuffer, MemoryUse::upload, spansCapacity_, pixelSpans_)) {
     made = true;
@@ -121,6 +111,10 @@ void CullLists::write(std::span<const ChunkDraw> draws, const View& view, const 
   params.isFrozen = frozen ? 1 : 0;
   params.levelCount = layout.levels;
   std::copy(layout.offset.begin(), layout.offset.end(), params.levelOffset);
+}
+
+void CullLists::buildPyramid() {
+  hostPyramid_.build(depth_.as<const float>(), params().picturePx, params().mapPx, pyramid_.as<float>());
 }
 
 CullCounts CullLists::counts() const {

@@ -3,29 +3,26 @@
 #pragma once
 
 #include "gpu/memory.h"
+#include "render/depth_pyramid.h"
 #include "render/renderer.h"
 #include "shared/cull_types.h"
 
 namespace eye {
 
-// Places of the pyramid's levels: halved, rounding up, to a single texel.
-struct PyramidLayout {
-  int levels = 0;
-  std::array<int32_t, EYE_MAX_DEPTH_LEVELS> offset{};
-  size_t texels = 0;
-};
-PyramidLayout pyramidLayout(glm::ivec2 mapPx);
-
 class CullLists {
  public:
-  explicit CullLists(const GpuDevice& gpu);
+  // `pyramidOnHost`: the depth map is read and the pyramid written by the CPU, see buildPyramid.
+  CullLists(const GpuDevice& gpu, bool pyramidOnHost);
   // Makes room; nothing may be in flight. True where a buffer was made anew: descriptors are to be written again.
   bool reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx);
   // Fills what the shaders read: every cluster of the draws is a candidate, in the draws' order.
   void write(std::span<const ChunkDraw> draws, const View& view, const glm::mat4& clipFromEcef, glm::ivec2 mapPx,
              bool frozen);
+  // With pyramidOnHost, when the depth has been copied: what CullPass::recordDepthPyramid does elsewhere.
+  void buildPyramid();
   // Of the frame that has just finished.
   CullCounts counts() const;
+  bool pyramidOnHost() const { return pyramidOnHost_; }
 
   int longestSpanPx() const { return longestSpanPx_; }  // pixels that a texel of the map touches along an axis
   uint32_t chunkCount() const { return chunkCount_; }
@@ -46,6 +43,8 @@ class CullLists {
  private:
   void writePixelSpans(glm::ivec2 picturePx, glm::ivec2 mapPx);
 
+  bool pyramidOnHost_;
+  DepthPyramid hostPyramid_;
   size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0, spansCapacity_ = 0;
   uint32_t chunkCount_ = 0, candidateCount_ = 0;
   GpuBuffer params_, chunks_, candidates_, early_, late_, fates_, depth_, pyramid_, pixelSpans_;

@@ -100,8 +100,8 @@ void CullPass::recordLevel(const vk::raii::CommandBuffer& commands, const shader
   commands.dispatch(groups(level.size.x, EYE_DEPTH_GROUP), groups(level.size.y, EYE_DEPTH_GROUP), 1);
 }
 
-void CullPass::recordDepthPyramid(const vk::raii::CommandBuffer& commands, const Targets& targets,
-                                  const CullLists& lists) const {
+void CullPass::recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets,
+                               const CullLists& lists) const {
   const std::array toCopy{imageBarrier(targets.depth, usageDepthTarget(), usageCopySource())};
   recordBarriers(commands, toCopy);
   const vk::Extent3D extent(static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx), 1);
@@ -109,9 +109,11 @@ void CullPass::recordDepthPyramid(const vk::raii::CommandBuffer& commands, const
                              vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eDepth, 0, 0, 1}, {}, extent));
   const std::array toTarget{imageBarrier(targets.depth, usageCopySource(), usageDepthTarget())};
   recordBarriers(commands, toTarget);
-  recordMemoryBarrier(commands, Stage::eTransfer, Access::eTransferWrite, Stage::eComputeShader,
-                      Access::eShaderStorageRead);
+  recordMemoryBarrier(commands, Stage::eTransfer, Access::eTransferWrite, Stage::eComputeShader | Stage::eHost,
+                      Access::eShaderStorageRead | Access::eHostRead);
+}
 
+void CullPass::recordDepthPyramid(const vk::raii::CommandBuffer& commands, const CullLists& lists) const {
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, nullptr);
   const int span = lists.longestSpanPx();
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *map_[static_cast<size_t>(span <= kMostTaps ? span : 0)]);

@@ -43,6 +43,7 @@ struct Renderer::Impl {
   void prepareCulling(const FrameInput& input);
   void record(const FrameInput& input, const DrawCounts& counts, std::optional<uint32_t> shown);
   void recordScene(const FrameInput& input, const DrawCounts& counts);
+  void buildPyramidOnHost();
   void recordCulledScene(const FrameInput& input, const DrawCounts& counts);
   void submitAndWait();
   std::span<const uint8_t> pictureRgba();
@@ -56,6 +57,11 @@ constexpr int kMostPixelsPerTexel = 128;
 
 glm::ivec2 usableMap(glm::ivec2 mapPx, glm::ivec2 picturePx) {
   return glm::max(mapPx, (picturePx + (kMostPixelsPerTexel - 1)) / kMostPixelsPerTexel);
+}
+
+bool pyramidOnHost(const RendererOptions& options, const GpuDevice& gpu) {
+  return options.depthPyramid == DepthPyramidBy::host ||
+         (options.depthPyramid == DepthPyramidBy::device && gpu.properties.deviceType == vk::PhysicalDeviceType::eCpu);
 }
 
 }  // namespace
@@ -94,7 +100,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     GLFWwindow* window = options.window ? impl->window->handle() : nullptr;
     impl->scene = std::make_unique<ScenePass>(device, impl->cache, impl->colourFormat(), options.debugViews);
     impl->lists = std::make_unique<DrawLists>(device);
-    impl->cullLists = std::make_unique<CullLists>(device);
+    impl->cullLists = std::make_unique<CullLists>(device, pyramidOnHost(options, device));
     impl->cull = std::make_unique<CullPass>(device, impl->cache);
     impl->cull->bind(device, *impl->pools, *impl->cullLists);
     runOnce(device, [&](const vk::raii::CommandBuffer& commands) { impl->cull->recordWarmUp(commands); });
@@ -216,6 +222,16 @@ void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& coun
   timestamps->mark(commands, "scene");
 }
 
+// Ends the commands so far, waits for them, and goes on with new ones when the CPU has reduced the depth: on a device
+// that is a CPU the wait costs nothing that a barrier would not.
+void Renderer::Impl::buildPyramidOnHost() {
+  commands.end();
+  submitAndWait();
+  const TraceScope scope("depth pyramid");
+  cullLists->buildPyramid();
+  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+}
+
 // Two passes: what was visible in the last frame, then what else its depth does not hide. The skirts, few and mostly
 // hidden, are not tested.
 void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts& counts) {
@@ -229,7 +245,12 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
   scene->end(commands);
   timestamps->mark(commands, "early");
   if (!input.freezeCulling) {
-    cull->recordDepthPyramid(commands, targets, *cullLists);
+    cull->recordDepthCopy(commands, targets, *cullLists);
+    if (cullLists->pyramidOnHost()) {
+      buildPyramidOnHost();
+    } else {
+      cull->recordDepthPyramid(commands, *cullLists);
+    }
     timestamps->mark(commands, "depth_map");
     cull->recordLate(commands, *cullLists);
     timestamps->mark(commands, "cull_late");

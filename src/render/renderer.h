@@ -19,6 +19,9 @@
 
 namespace eye {
 
+// Who reduces the depth map: compute shaders; the CPU; or, by kind of device, whichever is faster there.
+enum class DepthPyramidBy { device, compute, host };
+
 struct RendererOptions {
   int widthPx = 800, heightPx = 600;
   std::string device;     // part of a device's name; empty: discrete before integrated before CPU
@@ -29,6 +32,7 @@ struct RendererOptions {
   bool vsync = true;
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
   int textureSize = 128;                          // of the terrain database
+  DepthPyramidBy depthPyramid = DepthPyramidBy::device;
   bool debugViews = false;  // FrameInput's tint and showDepthMap work
 };
 

@@ -61,7 +61,9 @@ size_t differing(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b)
 }  // namespace
 
 TEST_CASE("occlusion culling changes no pixel, and the GPU culls as its CPU mirror") {
-  const auto renderer = makeRenderer(options());
+  RendererOptions pyramidBy = options();
+  pyramidBy.depthPyramid = GENERATE(DepthPyramidBy::compute, DepthPyramidBy::host);
+  const auto renderer = makeRenderer(pyramidBy);
   if (!renderer) return;
   const std::vector<ChunkDraw> draws = mountains(*renderer, 9, ecefFromGeodetic({49, 20, 2500}));
   const glm::ivec2 maps[] = {{200, 150}, {64, 48}, {80, 61}, {37, 29}, {320, 240}, {1, 1}, {7, 1}};
