@@ -11,8 +11,8 @@ namespace {
 
 // Boxes grow by this on each side, metres: a thousand times what doubles of the Earth's size are off.
 constexpr double kOutwardM = 1e-6;
-// Added to a cone's cutoff, radians: what is nearer to edge-on than this is drawn. Rounding to 1/256 of a pixel may turn
-// such a triangle to the eye where it is not much larger than a pixel. Far more than what single precision is off.
+// Added to a cone's cutoff, radians: what is nearer to edge-on than this is drawn. Rounding to 1/256 of a pixel may
+// turn such a triangle to the eye where it is not much larger than a pixel. Far more than what single precision is off.
 constexpr double kCutoffSlack = 0.01;
 constexpr int kAxisSteps = 32;
 

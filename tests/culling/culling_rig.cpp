@@ -33,7 +33,8 @@ std::string difference(const Picture& expected, const Picture& found, int widthP
                      colour(expected));
 }
 
-std::unique_ptr<CullingRig> CullingRig::open(const std::string& database, int widthPx, int heightPx) {
+std::unique_ptr<CullingRig> CullingRig::open(const std::string& database, int widthPx, int heightPx,
+                                             DepthPyramidBy pyramidBy) {
   const Result<DatabaseReader> reader = DatabaseReader::open(database);
   if (!reader) FAIL(reader.error().message);
   auto rig = std::make_unique<CullingRig>();
@@ -41,7 +42,8 @@ std::unique_ptr<CullingRig> CullingRig::open(const std::string& database, int wi
                                     .heightPx = heightPx,
                                     .device = {},
                                     .gpuBudgetBytes = kBudgetBytes,
-                                    .textureSize = reader->info().textureSize});
+                                    .textureSize = reader->info().textureSize,
+                                    .depthPyramid = pyramidBy});
   if (!renderer && renderer.error().kind == ErrorKind::notFound) {
     WARN("no Vulkan device here: " << renderer.error().message);
     return nullptr;
