@@ -75,7 +75,7 @@ struct DepthViewLevel {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(DepthViewLevel) == 32);
+static_assert(sizeof(DepthLevel) == 24 && sizeof(DepthViewLevel) == 32);
 static_assert(sizeof(ClusterRecord) == 24 && sizeof(CullChunk) == 64 && sizeof(CullCandidate) == 8);
 static_assert(sizeof(DrawCommand) == 20 && offsetof(DrawCommand, firstInstance) == 16);
 static_assert(sizeof(CullParams) == 36 + 4 + 16 + 12 + 4 * EYE_MAX_DEPTH_LEVELS);

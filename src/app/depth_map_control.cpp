@@ -13,6 +13,9 @@ constexpr double kNearM = 20000;
 // The passes that occlusion culling adds, by the names of their times.
 constexpr std::array<std::string_view, 3> kPasses{"cull_early", "depth_map", "cull_late"};
 
+// And those that draw, with it or without; uploads, read-back and overlay have nothing to do with the choice.
+constexpr std::array<std::string_view, 3> kDrawing{"scene", "early", "late"};
+
 // Middle of the finest resident tile's heights under the eye.
 double groundHeightM(const TerrainCache& cache, const Geodetic& eye) {
   double heightM = 0;
@@ -76,11 +79,16 @@ std::optional<glm::ivec2> DepthMapControl::choose(const Pose& pose, const Terrai
 }
 
 void DepthMapControl::learn(const FrameOutput& output) {
+  if (!decision_) return;
+  if (!output.depthMapPx) measured_.used = DepthMapChoice::off;  // nothing was in view to test
   measured_.submittedTriangles = output.triangles + output.clusters.trianglesOccluded;
   measured_.occludedTriangles = output.clusters.trianglesOccluded;
-  measured_.frameCostMs = output.gpuMs;
-  for (const PassTime& pass : output.passes)
-    if (std::ranges::find(kPasses, pass.name) != kPasses.end()) measured_.passCostMs += pass.ms;
+  for (const PassTime& pass : output.passes) {
+    const bool isAdded = std::ranges::find(kPasses, pass.name) != kPasses.end();
+    const bool isDrawing = std::ranges::find(kDrawing, pass.name) != kDrawing.end();
+    if (isAdded) measured_.passCostMs += pass.ms;
+    if (isAdded || isDrawing) measured_.frameCostMs += pass.ms;
+  }
 }
 
 }  // namespace eye

@@ -383,9 +383,19 @@ std::string defaultTerrainPath() {
 }
 
 std::string Options::settingsLine() const {
-  return fmt::format("size={}x{} sse={} culling={} horizon={} cache-ram={} cache-gpu={} offline={} redraw={}", widthPx,
-                     heightPx, ssePx, nameOf(culling), horizon == HorizonTest::paper ? "paper" : "ellipsoid",
-                     cacheRamMiB, cacheGpuMiB, offline, redrawAlways ? "always" : "changed");
+  const std::string map = depthMap == DepthMapMode::off     ? "off"
+                          : depthMap == DepthMapMode::fixed ? fmt::format("{}x{}", depthMapPx.x, depthMapPx.y)
+                                                            : "auto";
+  const std::string angles = frustumDeg ? fmt::format("frustum={},{},{},{}", (*frustumDeg)[0], (*frustumDeg)[1],
+                                                      (*frustumDeg)[2], (*frustumDeg)[3])
+                                        : fmt::format("fov={}", fovDeg);
+  return fmt::format(
+      "size={}x{} {} near={} sse={} culling={} depth-map={} selector={}{} horizon={} cache-ram={} cache-gpu={} "
+      "offline={} redraw={}",
+      widthPx, heightPx, angles, nearM, ssePx, nameOf(culling), map,
+      selectorMode == SelectorMode::paper ? "paper" : "adaptive", selectorRules.empty() ? "" : ":" + selectorRules,
+      horizon == HorizonTest::paper ? "paper" : "ellipsoid", cacheRamMiB, cacheGpuMiB, offline,
+      redrawAlways ? "always" : "changed");
 }
 
 ParsedOptions parseOptions(int argc, const char* const* argv) {

@@ -209,7 +209,7 @@ SuiteReport cullingReport(const std::vector<CullingCell>& cells) {
       .introduction =
           "The same views drawn without culling, with frustum culling (planes and horizon) and "
           "with dynamic culling (also occlusion, by clusters, with the depth map that the "
-          "fuzzy selector picks). Frames of the three in turn; medians of frames, means of "
+          "fuzzy selector picks). Frames of all in turn; medians of frames, means of "
           "views. CPU time is that of the whole process.",
   };
   // Blocks of one place and size, in the order of the cells.

@@ -156,7 +156,7 @@ SuiteReport selectorReport(const std::vector<Flyer>& flyers, const std::vector<d
                            {"regret", lost},
                            {"frame_ms", mean(flyer.frameMs)},
                            {"against_off", againstOff},
-                           {"worst_10s_loss", worst},
+                           {"worst_600_frames_loss", worst},
                            {"used", used}});
     std::vector<std::string> row{
         flyer.mode,    fmt::format("{:.2f}", mean(flyer.cpuMs)),   fmt::format("{:.2f}", mean(flyer.frameMs)),
@@ -166,7 +166,7 @@ SuiteReport selectorReport(const std::vector<Flyer>& flyers, const std::vector<d
     if (flyer.isFixed) continue;
     report.summary[flyer.mode + "_regret"] = lost;
     if (flyer.mode != "adaptive") continue;
-    report.summary["worst_10s_loss"] = worst;
+    report.summary["worst_600_frames_loss"] = worst;
     report.targets = {{fmt::format("Regret of the adaptive mode (at most {:.0f} %)", 100 * kMostRegret), percent(lost),
                        lost <= kMostRegret},
                       {fmt::format("Worst loss of the adaptive mode against off over any {} frames (at most {:.0f} %)",

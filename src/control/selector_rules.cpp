@@ -20,8 +20,9 @@ std::optional<Error> readPaper(const std::string& path, const toml::table* secti
   rules.altitudeReference = static_cast<AltitudeReference>(reference);
   table.membership("altitude-ft", {-2000, 1e6}, "altitude-membership", rules.altitudeFt);
   table.membership("pitch-deg", kPitchDeg, "pitch-membership", rules.pitchDeg);
-  table.numbers("bands", {0, 2}, true, rules.bands);
-  table.number("hysteresis", {0.02, 0.5}, rules.hysteresis);
+  table.numbers("bands", {0.05, 2}, true, rules.bands);
+  // Well below the first edge, or the sum could never fall out of its band.
+  table.number("hysteresis", {0.02, rules.bands[0] / 2}, rules.hysteresis);
   return table.finish();
 }
 

@@ -13,6 +13,8 @@ class CullLists {
  public:
   // `pyramidOnHost`: the depth map is read and the pyramid written by the CPU, see buildPyramid.
   CullLists(const GpuDevice& gpu, bool pyramidOnHost);
+  // Whether buffers and dispatches for so much are within the device's limits.
+  static bool fits(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx);
   // Makes room; nothing may be in flight. True where a buffer was made anew: descriptors are to be written again.
   bool reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx);
   // Fills what the shaders read: every cluster of the draws is a candidate, in the draws' order.

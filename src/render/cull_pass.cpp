@@ -93,6 +93,8 @@ void CullPass::recordEarly(const vk::raii::CommandBuffer& commands, const CullLi
                       Access::eShaderStorageRead | Access::eShaderStorageWrite);
   dispatchClusters(commands, early_, lists);
   recordCommandsBarrier(commands);
+  // Of a frozen frame the CPU reads these fates.
+  recordMemoryBarrier(commands, Stage::eComputeShader, Access::eShaderStorageWrite, Stage::eHost, Access::eHostRead);
 }
 
 void CullPass::recordLevel(const vk::raii::CommandBuffer& commands, const shader::DepthLevel& level) const {

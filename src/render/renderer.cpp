@@ -40,8 +40,8 @@ struct Renderer::Impl {
 
   vk::Format colourFormat() const;
   void resizeTargets(int widthPx, int heightPx);
-  void prepareCulling(const FrameInput& input);
-  void record(const FrameInput& input, const DrawCounts& counts, std::optional<uint32_t> shown);
+  bool prepareCulling(const FrameInput& input);
+  void record(const FrameInput& input, const DrawCounts& counts, bool culls, std::optional<uint32_t> shown);
   void recordScene(const FrameInput& input, const DrawCounts& counts);
   void buildPyramidOnHost();
   void recordCulledScene(const FrameInput& input, const DrawCounts& counts);
@@ -162,10 +162,10 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     impl.scene->frame() = frameData(input);
     const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
     if (impl.debug) impl.debug->prepare(*impl.gpu, input, *impl.pools, *impl.cullLists, impl.options.textureSize);
-    if (input.depthMapPx) impl.prepareCulling(input);
+    const bool culls = impl.prepareCulling(input);
     std::optional<uint32_t> shown;
     if (impl.swapchain != nullptr) shown = impl.swapchain->held();
-    impl.record(input, counts, shown);
+    impl.record(input, counts, culls, shown);
     impl.submitAndWait();
     impl.pools->staged();
     impl.drawn = true;
@@ -176,7 +176,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     output.triangles = counts.surfaceTriangles + counts.skirtTriangles;
     output.vertices = counts.vertices;
     output.draws = counts.surfaces + counts.skirts;
-    if (input.depthMapPx) {
+    if (culls) {
       output.clusters = impl.cullLists->counts();
       output.depthMapPx = impl.cullLists->params().mapPx;
       output.triangles = output.clusters.trianglesDrawn + counts.skirtTriangles;
@@ -204,14 +204,18 @@ void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
   overlay->bindTargets(*gpu, targets);
 }
 
-void Renderer::Impl::prepareCulling(const FrameInput& input) {
+// False: nothing to test, or more than the device's buffers hold: the frame is drawn without the pass.
+bool Renderer::Impl::prepareCulling(const FrameInput& input) {
+  if (!input.depthMapPx) return false;
   const glm::ivec2 picturePx(input.view.widthPx, input.view.heightPx);
   const glm::ivec2 mapPx = usableMap(*input.depthMapPx, picturePx);
+  if (!CullLists::fits(*gpu, input.draws, picturePx, mapPx)) return false;
   if (cullLists->reserve(*gpu, input.draws, picturePx, mapPx)) {
     cull->bind(*gpu, *pools, *cullLists);
     if (debug) debug->bind(*gpu, *cullLists);
   }
   cullLists->write(input.draws, input.view, scene->frame().clipFromEcef, mapPx, input.freezeCulling);
+  return cullLists->candidateCount() > 0;
 }
 
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
@@ -263,13 +267,14 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
   timestamps->mark(commands, "late");
 }
 
-void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, std::optional<uint32_t> shown) {
+void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, bool culls,
+                            std::optional<uint32_t> shown) {
   const TraceScope scope("record");
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   timestamps->begin(commands);
   pools->recordUploads(commands);
   timestamps->mark(commands, "upload");
-  if (input.depthMapPx && cullLists->candidateCount() > 0) {
+  if (culls) {
     recordCulledScene(input, counts);
   } else {
     recordScene(input, counts);

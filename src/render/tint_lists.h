@@ -12,11 +12,11 @@
 
 namespace eye {
 
-// The clusters of each chunk and their fates, as the last late pass left them.
 // Colours as displayed. `why`: EYE_FATE_VISIBLE and so on.
 glm::vec3 tintOfLevel(int level);
 glm::vec3 tintOfFate(uint32_t why);
 
+// The clusters of each chunk and their fates, as the last late pass left them.
 class FateMemory {
  public:
   // Of the frame that has finished, which had a depth map. Slow: the clusters are copied from the GPU.

@@ -69,7 +69,7 @@ TEST_CASE("Suite culling: every scheme at every height, and the published figure
 TEST_CASE("Suite selector: every fixed choice and both modes on the same frames") {
   const auto report = quickly(runSelectorSuite);
   if (!report) return;
-  requireKeys(report->summary, {"adaptive_regret", "paper_regret", "worst_10s_loss", "frames"});
+  requireKeys(report->summary, {"adaptive_regret", "paper_regret", "worst_600_frames_loss", "frames"});
   std::set<std::string> modes;
   for (const auto& row : report->rows) {
     requireKeys(row, {"mode", "cpu_ms", "regret", "used"});
@@ -82,7 +82,7 @@ TEST_CASE("Suite selector: every fixed choice and both modes on the same frames"
   CHECK(modes == std::set<std::string>{"off", "320x240", "400x300", "640x480", "800x600", "adaptive", "paper"});
   CHECK(report->rows[1]["used"]["320x240"] == 1.0);  // a fixed choice uses nothing else
   CHECK(report->rows[0]["used"]["off"] == 1.0);
-  CHECK(report->rows[0]["worst_10s_loss"] == 0.0);  // off against itself
+  CHECK(report->rows[0]["worst_600_frames_loss"] == 0.0);  // off against itself
 }
 
 TEST_CASE("A suite over no database says so") {
