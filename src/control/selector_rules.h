@@ -43,7 +43,7 @@ struct AdaptiveRules {
   // When to change and when to try, in frames and in shares of a frame's cost.
   double hysteresis = 0.005;
   int dwellFrames = 30;
-  int settleFrames = 1;  // after a change: not learnt from
+  int settleFrames = 3;  // after a change: not learnt from; what is visible is known only then
   int trialFrames = 3;   // after these: learnt from
   int firstIntervalFrames = 60, longestIntervalFrames = 960;
   double lossRate = 0.01;  // of a frame's cost, what trials and errors may cost on average
