@@ -136,7 +136,7 @@ void report(const std::string& name, const Sums& sums) {
       "occluded, {} outside, {} back-facing\n",
       name, sums.pictures, sums.buried, sums.mirrored, sums.considered, sums.drawn, sums.occluded, sums.outside,
       sums.backFacing);
-  CHECK(sums.occluded > sums.considered / 50);
+  CHECK(sums.occluded > sums.considered / 200);
   CHECK(sums.drawn > 0);
   CHECK(sums.mirrored > 0);
 }
