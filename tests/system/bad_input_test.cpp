@@ -231,7 +231,8 @@ TEST_CASE("bad input: configuration files") {
   const ProgramRun run = runProgram("eyepoint", picture(file, {"--config", config, "--summary", summary}));
   INFO(run.err);
   CHECK(run.exitCode == 0);
-  CHECK(readText(summary).find("size=64x48 sse=4") != std::string::npos);
+  const std::string settings = readText(summary);
+  CHECK_THAT(settings, Catch::Matchers::Contains("size=64x48 ") && Catch::Matchers::Contains(" sse=4 "));
 }
 
 TEST_CASE("bad input: outputs that cannot be written") {
