@@ -15,7 +15,7 @@ breach "a device wait belongs to shutdown and resize alone, and says which in a 
   "$(grep -rnE '[wW]aitIdle *\(' src tools --include='*.cpp' --include='*.h' | grep -vE '// .*(shutdown|resize)')"
 
 breach "the core knows neither Vulkan nor GDAL nor a window" \
-  "$(grep -rnE '#include *[<"](vulkan|gdal|GLFW|ogr_|cpl_|imgui)' src/base src/telemetry src/geo src/terrain src/paging src/link src/control)"
+  "$(grep -rnE '#include *[<"](vulkan|gdal|GLFW|ogr_|cpl_|imgui)' src/base src/telemetry src/geo src/terrain src/paging src/link src/control src/predict)"
 
 breach "a file is at most 700 lines" \
   "$(find src tools tests shaders -type f \( -name '*.cpp' -o -name '*.h' -o -name '*.vert' -o -name '*.frag' -o -name '*.comp' \) -exec wc -l {} + |
