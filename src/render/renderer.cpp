@@ -10,6 +10,7 @@
 #include "render/debug_views.h"
 #include "render/frame_data.h"
 #include "render/overlay.h"
+#include "render/raster_overlap.h"
 #include "render/scene_pass.h"
 #include "render/warm_up.h"
 #include "telemetry/trace.h"
@@ -28,6 +29,7 @@ struct Renderer::Impl {
   std::unique_ptr<CullLists> cullLists;
   std::unique_ptr<CullPass> cull;
   std::unique_ptr<ScenePass> scene;
+  std::unique_ptr<RasterOverlap> overlap;
   std::unique_ptr<DebugViews> debug;  // null unless the options ask for it
   std::unique_ptr<Overlay> overlay;
   std::unique_ptr<Timestamps> timestamps;
@@ -110,6 +112,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     }
     impl->overlay = std::make_unique<Overlay>(device, impl->cache, impl->colourFormat(), window);
     impl->timestamps = std::make_unique<Timestamps>(device);
+    impl->overlap = std::make_unique<RasterOverlap>(device);
     impl->scene->bindTextures(device, impl->pools->textures());
     const vk::CommandBufferAllocateInfo one(*device.commandPool, vk::CommandBufferLevel::ePrimary, 1);
     impl->commands = std::move(vk::raii::CommandBuffers(device.device, one).front());
@@ -220,7 +223,11 @@ bool Renderer::Impl::prepareCulling(const FrameInput& input) {
 
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
   scene->begin(commands, targets, ScenePass::Pass::first, input.background);
-  scene->drawTerrain(commands, *gpu, *pools, lists->draws(), lists->commands(), 0, counts.surfaces + counts.skirts);
+  const uint32_t count = counts.surfaces + counts.skirts, batch = overlap->batch(count);
+  for (uint32_t done = 0; done < count; done += batch) {
+    if (done > 0) overlap->handOver(commands);
+    scene->drawTerrain(commands, *gpu, *pools, lists->draws(), lists->commands(), done, std::min(batch, count - done));
+  }
   if (!input.background) scene->drawSky(commands);
   scene->end(commands);
   timestamps->mark(commands, "scene");
@@ -272,6 +279,7 @@ void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, b
   const TraceScope scope("record");
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   timestamps->begin(commands);
+  overlap->begin(commands);
   pools->recordUploads(commands);
   timestamps->mark(commands, "upload");
   if (culls) {
