@@ -12,7 +12,7 @@ namespace {
 using PacketBytes = std::array<std::byte, kMaxBuiltBytes>;
 
 bool isOld(Version version) {
-  return version.major == 3 && version.minor < 2;
+  return !isSince(version, 2);
 }
 
 // Size and id; returns the packet's bytes, which are 0 otherwise.

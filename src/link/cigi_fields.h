@@ -18,6 +18,11 @@ struct Version {
   bool operator==(const Version&) const = default;
 };
 
+// 4.0, or 3.x from this x on.
+constexpr bool isSince(Version version, uint8_t minor) {
+  return version.major > 3 || version.minor >= minor;
+}
+
 // How a message is written.
 struct Format {
   Version version;
@@ -45,6 +50,7 @@ class FieldReader {
 
   bool bigEndian() const { return format_.order == std::endian::big; }
   bool has(At at) const { return at.in(format_.version) != 0; }
+  bool since(uint8_t minor) const { return isSince(format_.version, minor); }
   // Why the packet is not believed; nothing so far where it is.
   const std::optional<std::string>& problem() const { return problem_; }
   void reject(std::string why);
@@ -97,6 +103,7 @@ class FieldWriter {
 
   bool bigEndian() const { return format_.order == std::endian::big; }
   bool has(At at) const { return at.in(format_.version) != 0; }
+  bool since(uint8_t minor) const { return isSince(format_.version, minor); }
   void require(bool, const char*) {}
 
   void u8(At at, uint8_t value) { store(at, value, 1); }

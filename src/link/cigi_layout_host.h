@@ -1,5 +1,6 @@
 // Layouts of the packets from host to image generator: each field's offset in {3.x, 4.0}, once for reading and writing.
-// A layout may branch on what it has already gone through. What an older 3.x lacks lies in bytes that it reserves as 0.
+// A layout may branch on what it has already gone through, and on the minor version: what older ones lack lies in bits
+// that they reserve as 0.
 #pragma once
 
 #include "link/cigi_fields.h"
@@ -18,7 +19,7 @@ template <class Io>
 void layout(Io& io, Of<Io, IgControl>& p) {
   io.i8({3, 5}, p.databaseNumber);
   io.choice({4, 7}, 0x03, p.mode, IgMode::debug, "mode");
-  io.flag({4, 7}, 0x08, p.smoothing);
+  if (io.since(3)) io.flag({4, 7}, 0x08, p.smoothing);
   io.flag({kAbsent, 6}, 0x01, p.substituteTypes);
   io.u32({8, 8}, p.hostFrame);
   io.present({4, 7}, 0x04, p.ticks);
@@ -34,7 +35,7 @@ void layout(Io& io, Of<Io, EntityTraits>& p) {
   io.flag({kAbsent, 4}, 0x04, p.detectCollisions);
   io.flag({4, kAbsent}, 0x10, p.inheritAlpha);
   io.flag({kAbsent, 4}, 0x08, p.inheritAlpha);
-  io.flag({5, 4}, 0x10, p.smoothing);
+  if (io.since(3)) io.flag({5, 4}, 0x10, p.smoothing);
   io.u8({6, 5}, p.alpha);
   io.flag({5, kAbsent}, 0x01, p.animateBackward);
   io.flag({5, kAbsent}, 0x02, p.animateForever);
@@ -103,7 +104,7 @@ void layout(Io& io, Of<Io, Velocity>& p) {
   io.u16({2, 4}, p.entityId);
   io.present({5, 7}, 0x01, p.partId);
   if (p.partId) io.u8({4, 6}, *p.partId);
-  io.flag({5, 7}, 0x02, p.inBodyFrame);
+  if (io.since(2)) io.flag({5, 7}, 0x02, p.inBodyFrame);
   io.f32({8, 8}, p.xMS, kSpeed);
   io.f32({12, 12}, p.yMS, kSpeed);
   io.f32({16, 16}, p.zMS, kSpeed);
@@ -133,7 +134,7 @@ void layout(Io& io, Of<Io, HeightRequest>& p) {
   io.u16({2, 4}, p.id);
   io.choice({4, 8}, 0x03, p.kind, HeightKind::both, "request type");
   io.frame({4, 8}, 0x04, p.point);
-  io.u8({5, 9}, p.everyFrames);
+  if (io.since(2)) io.u8({5, 9}, p.everyFrames);
   io.u16({6, 6}, p.entityId);
   io.point({8, 16}, p.point, kLowestTestPointM);
 }
@@ -147,12 +148,12 @@ void layout(Io& io, Of<Io, SightSegmentRequest>& p) {
   io.flag({4, 8}, 0x08, p.answerInBodyFrame);
   io.u8({5, 9}, p.alphaThreshold);
   io.u16({6, 6}, p.sourceEntityId);
-  io.present({4, 8}, 0x10, p.destinationEntityId);
-  if (p.destinationEntityId) io.u16({62, 10}, *p.destinationEntityId);
+  if (io.since(2)) io.present({4, 8}, 0x10, p.destinationEntityId);
+  if (io.since(2) && p.destinationEntityId) io.u16({62, 10}, *p.destinationEntityId);
   io.point({8, 16}, p.source, kLowestTestPointM);
   io.point({32, 40}, p.destination, kLowestTestPointM);
   io.u32({56, 64}, p.materialMask);
-  io.u8({60, 12}, p.everyFrames);
+  if (io.since(2)) io.u8({60, 12}, p.everyFrames);
 }
 
 template <class Io>
@@ -170,7 +171,7 @@ void layout(Io& io, Of<Io, SightVectorRequest>& p) {
   io.require(p.minRangeM <= p.maxRangeM, "the minimum range is beyond the maximum range");
   io.point({24, 32}, p.source, kLowestTestPointM);
   io.u32({48, 56}, p.materialMask);
-  io.u8({52, 10}, p.everyFrames);
+  if (io.since(2)) io.u8({52, 10}, p.everyFrames);
 }
 
 }  // namespace eye::cigi

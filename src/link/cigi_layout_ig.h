@@ -27,7 +27,7 @@ template <class Io>
 void layout(Io& io, Of<Io, HeightResponse>& p) {
   io.u16({2, 6}, p.id);
   io.flag({4, 4}, 0x02, p.ofTerrain);
-  io.bits({4, 4}, 0xf0, p.hostFrameNibble);
+  if (io.since(2)) io.bits({4, 4}, 0xf0, p.hostFrameNibble);
   io.present({4, 4}, 0x01, p.heightM);
   if (p.heightM) io.f64({8, 8}, *p.heightM, kHeight);
 }
@@ -35,7 +35,7 @@ void layout(Io& io, Of<Io, HeightResponse>& p) {
 template <class Io>
 void layout(Io& io, Of<Io, HeightExtendedResponse>& p) {
   io.u16({2, 6}, p.id);
-  io.bits({4, 4}, 0xf0, p.hostFrameNibble);
+  if (io.since(2)) io.bits({4, 4}, 0xf0, p.hostFrameNibble);
   io.present({4, 4}, 0x01, p.surface);
   if (!p.surface) return;
   io.f64({8, 8}, p.surface->aboveTerrainM, kHeight);
@@ -49,7 +49,7 @@ template <class Io>
 void layout(Io& io, Of<Io, SightResponse>& p) {
   io.u16({2, 4}, p.id);
   io.flag({4, 8}, 0x04, p.visible);
-  io.bits({4, 8}, 0xf0, p.hostFrameNibble);
+  if (io.since(2)) io.bits({4, 8}, 0xf0, p.hostFrameNibble);
   io.u8({5, 9}, p.responses);
   io.present({4, 8}, 0x02, p.entityId);
   if (p.entityId) io.u16({6, 6}, *p.entityId);
@@ -62,7 +62,10 @@ void layout(Io& io, Of<Io, SightExtendedResponse>& p) {
   io.u16({2, 4}, p.id);
   io.flag({4, 8}, 0x01, p.valid);
   io.flag({4, 8}, 0x08, p.visible);
-  io.bits({4, 8}, 0xf0, p.hostFrameNibble);
+  if (io.since(2))
+    io.bits({4, 8}, 0xf0, p.hostFrameNibble);
+  else
+    io.flag({4, kAbsent}, 0x10, p.inBodyFrame);
   io.u8({5, 9}, p.responses);
   io.present({4, 8}, 0x02, p.entityId);
   if (p.entityId) io.u16({6, 6}, *p.entityId);

@@ -25,7 +25,7 @@ enum class IgMode : uint8_t { standby, operate, debug, maintenance };  // the la
 struct IgControl {  // once in each message of a host, first
   int8_t databaseNumber = 0;
   IgMode mode = IgMode::standby;
-  bool smoothing = false;           // the image generator may extrapolate; 3.2 and later
+  bool smoothing = false;           // the image generator may extrapolate; 3.3 and later
   bool substituteTypes = false;     // 4.0
   uint32_t hostFrame = 0;           // to 3.1 in synchronous operation: the image generator's frame, sent back
   std::optional<uint32_t> ticks;    // of 10 microseconds; wraps after 11.9 hours
@@ -94,7 +94,7 @@ struct ViewDefinition {
 struct Velocity {
   uint16_t entityId = 0;
   std::optional<uint8_t> partId;  // of an articulated part, else of the entity
-  bool inBodyFrame = false;       // else north, east, down, or the parent's
+  bool inBodyFrame = false;       // else north, east, down, or the parent's; 3.2 and later
   double xMS = 0, yMS = 0, zMS = 0;
   double rollDegS = 0, pitchDegS = 0, yawDegS = 0;
   bool operator==(const Velocity&) const = default;
@@ -154,7 +154,7 @@ enum class HeightKind : uint8_t { aboveTerrain, ofTerrain, both };
 struct HeightRequest {  // HAT/HOT Request
   uint16_t id = 0;
   HeightKind kind = HeightKind::aboveTerrain;
-  uint8_t everyFrames = 0;  // 0: once
+  uint8_t everyFrames = 0;  // 0: once; 3.2 and later, as in the next two
   uint16_t entityId = 0;    // in whose frame a BodyOffset is
   Point point;
   bool operator==(const HeightRequest&) const = default;
@@ -165,7 +165,7 @@ struct SightSegmentRequest {  // Line of Sight Segment Request
   bool extended = false, answerInBodyFrame = false;
   uint8_t alphaThreshold = 0, everyFrames = 0;
   uint16_t sourceEntityId = 0;
-  std::optional<uint16_t> destinationEntityId;  // absent: the source's
+  std::optional<uint16_t> destinationEntityId;  // absent: the source's; 3.2 and later
   Point source, destination;
   uint32_t materialMask = 0;
   bool operator==(const SightSegmentRequest&) const = default;
@@ -201,7 +201,7 @@ struct StartOfFrame {         // once in each message of an image generator, fir
 struct HeightResponse {
   uint16_t id = 0;
   bool ofTerrain = false;       // else above it
-  uint8_t hostFrameNibble = 0;  // the last four bits of the host's frame that asked
+  uint8_t hostFrameNibble = 0;  // the last four bits of the host's frame that asked; 3.2 and later
   std::optional<double> heightM;
   bool operator==(const HeightResponse&) const = default;
 };
@@ -236,7 +236,8 @@ struct SightExtendedResponse {
   uint8_t hostFrameNibble = 0, responses = 0;
   std::optional<uint16_t> entityId;
   std::optional<double> rangeM;
-  // In the frame that the request asked for, which the response does not repeat.
+  // In the frame that the request asked for. To 3.1 the response repeats that; later it is never set.
+  bool inBodyFrame = false;
   double latDegOrXM = 0, lonDegOrYM = 0, altMOrZM = 0;
   uint8_t red = 0, green = 0, blue = 0, alpha = 0;
   uint32_t material = 0;

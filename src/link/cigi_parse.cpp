@@ -117,7 +117,7 @@ class MessageReader {
     const Shape& shape = kShape<T>;
     if (id != shape.id(message_.format.version)) return false;
     if (kIsHeader<T> && !isFirst_)
-      reject(fmt::format("{}: the message has one already", shape.name));
+      reject(fmt::format("{}: the message has one already", shape.name(message_.format.version)));
     else if (fill(packet, bytes))
       message_.packets.emplace_back(std::move(packet));
     return true;
@@ -145,12 +145,12 @@ class MessageReader {
         otherSidesFrame(packet).emplace();
     }
     if (bytes.size() < expected) {
-      reject(fmt::format("{} has {} bytes instead of {}", shape.name, bytes.size(), expected));
+      reject(fmt::format("{} has {} bytes instead of {}", shape.name(message_.format.version), bytes.size(), expected));
       return false;
     }
     FieldReader reader(bytes, message_.format);
     layout(reader, packet);
-    if (reader.problem()) reject(fmt::format("{}: {}", shape.name, *reader.problem()));
+    if (reader.problem()) reject(fmt::format("{}: {}", shape.name(message_.format.version), *reader.problem()));
     return !reader.problem();
   }
 
