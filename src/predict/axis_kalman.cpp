@@ -40,7 +40,7 @@ AxisMatrix predictedCovariance(const AxisMatrix& covariance, double density, dou
 
 AxisVector measure(AxisMatrix& covariance, double measurementVariance) {
   const Eigen::Index states = covariance.rows();
-  const AxisVector gain = covariance.col(0) / (covariance(0, 0) + measurementVariance);
+  AxisVector gain = covariance.col(0) / (covariance(0, 0) + measurementVariance);
   // (I - K C) P (I - K C)^T + K R K^T, where C takes the first state.
   AxisMatrix keep = AxisMatrix::Identity(states, states);
   keep.col(0) -= gain;

@@ -6,7 +6,6 @@
 namespace eye {
 namespace {
 
-constexpr int kSettling = 30;        // observations after a start, in which the covariance is the start's
 constexpr double kScaleGain = 0.01;  // an observation; the scale's own noise is then 6 %
 constexpr double kRatioGain =
     0.01;                      // an observation; bandwidth goes with the sixth root of the ratio, so it may be rough
@@ -28,11 +27,10 @@ NoiseEstimate::NoiseEstimate(double processNoise, double measurementSigmaM, bool
 
 void NoiseEstimate::restart() {
   recent_[0] = recent_[1] = 0;
-  sinceRestart_ = 0;
 }
 
 void NoiseEstimate::observe(std::span<const double> whitened) {
-  if (!adapt_ || ++sinceRestart_ <= kSettling) return;
+  if (!adapt_) return;
   double square = 0, common = 0;
   for (size_t i = 0; i < whitened.size(); ++i) {
     square += whitened[i] * whitened[i];

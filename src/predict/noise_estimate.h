@@ -27,7 +27,6 @@ class NoiseEstimate {
   bool adapt_;
   double processNoise_, measurementVarianceM2_;
   double recent_[2] = {0, 0};  // exponential mean of the innovations before, an axis each
-  int sinceRestart_ = 0;
 };
 
 }  // namespace eye

@@ -26,7 +26,7 @@ constexpr double kFarthestM = 1e9;  // altitude: beyond the moon
 
 // Tuned so that NIS is about 1 in standard-rate turns and reversals at 300 m/s with noise of 2 m at 60 Hz.
 double modelNoise(int states) {
-  return states == 6 ? 60 : states == 9 ? 20 : 20;
+  return states == 6 ? 60 : 20;  // of acceleration; of jerk, and of snap
 }
 
 int axisStates(const PredictorOptions& options) {
@@ -88,9 +88,9 @@ void ViewpointPredictor::observe(double timeS, const Pose& pose) {
   if (gateNis(innovation, stepS) > kGateNis) {
     ++counts_.outliers;
     ++outliersInARow_;
-    if (!beginsAnew(innovation, pose)) return;
+    if (!beginsAnew(innovation)) return;
     ++counts_.teleports;
-    // A short way off, it is likely the same flight: its speed is a guess.
+    // A short way off it is likely the same flight, and its velocity a guess; but the same place again is a standstill.
     const bool isShift = pose != newest_ && distanceM(innovation) < kTeleportM;
     const Vec3d velocityEcefMS = isShift ? position_.at(0, noise()).velocityEcefMS : Vec3d(0.0);
     start(timeS, pose, ecefM, {velocityEcefMS, isShift ? kShiftSpeedMS + glm::length(velocityEcefMS) : kAnySpeedMS});
@@ -140,8 +140,8 @@ bool ViewpointPredictor::isInOrder(double timeS, const Pose& pose, const Vec3d& 
   return true;
 }
 
-bool ViewpointPredictor::beginsAnew(const PositionFilter::Innovation& innovation, const Pose& pose) {
-  return distanceM(innovation) > kTeleportM || outliersInARow_ >= kTeleportRun || pose == newest_;
+bool ViewpointPredictor::beginsAnew(const PositionFilter::Innovation& innovation) const {
+  return distanceM(innovation) > kTeleportM || outliersInARow_ >= kTeleportRun;
 }
 
 void ViewpointPredictor::learn(const PositionFilter::Innovation& innovation) {

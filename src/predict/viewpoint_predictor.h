@@ -76,7 +76,7 @@ class ViewpointPredictor {
   void start(double timeS, const Pose& pose, const Vec3d& ecefM, const Guess& guess);
   bool isInOrder(double timeS, const Pose& pose, const Vec3d& ecefM);
   double gateNis(const PositionFilter::Innovation& innovation, double stepS) const;
-  bool beginsAnew(const PositionFilter::Innovation& innovation, const Pose& pose);
+  bool beginsAnew(const PositionFilter::Innovation& innovation) const;
   void learn(const PositionFilter::Innovation& innovation);
   AxisNoise noise() const;
 

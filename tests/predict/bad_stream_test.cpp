@@ -108,7 +108,13 @@ TEST_CASE("A host that sends every state twice is flying on") {
 TEST_CASE("A host that is paused stands still, and flies on when it does") {
   ViewpointPredictor predictor;
   fly(predictor, 0, 600);
-  for (int k = 1; k <= 60; ++k) predictor.observe(flight()[599].timeS + k / 60.0, flight()[599].pose);
+  for (int k = 1; k <= 60; ++k) {
+    predictor.observe(flight()[599].timeS + k / 60.0, flight()[599].pose);
+    // Until it is believed the flight goes on: a quarter of a second and three packets.
+    const double offM =
+        glm::length(predictor.at(flight()[599].timeS + k / 60.0).ecefM - ecefFromGeodetic(flight()[599].pose.position));
+    REQUIRE(offM < (k < 20 ? 100 : 5));
+  }
   const Prediction paused = predictor.at(flight()[599].timeS + 1.5);
   CHECK(glm::length(paused.ecefM - ecefFromGeodetic(flight()[599].pose.position)) < 5);
   CHECK(predictor.state().counts.teleports == 1);
@@ -190,6 +196,35 @@ TEST_CASE("Teleports: a long way at once, a short way after three observations")
   CHECK(predictor.state().counts.outliers == observations);
 }
 
+TEST_CASE("A flight that is shifted a little keeps its velocity") {
+  ViewpointPredictor predictor;
+  fly(predictor, 0, 600);
+  const auto shifted = [](size_t i) {
+    Pose pose = flight()[i].pose;
+    pose.position.altM += 200;
+    return pose;
+  };
+  for (size_t i = 600; i < 603; ++i) predictor.observe(flight()[i].timeS, shifted(i));
+  REQUIRE(predictor.state().counts.teleports == 1);
+  const Prediction p = predictor.at(flight()[602].timeS + 0.5);
+  CHECK(glm::length(p.ecefM - ecefFromGeodetic(shifted(632).position)) < 10);
+}
+
+TEST_CASE("A hard turn after a quiet hour, seen once a second, is a turn and no teleport") {
+  const Vec3d originM = ecefFromGeodetic({47, 11, 3000});
+  const Mat3d frame = ecefFromEnu(47, 11);
+  ViewpointPredictor predictor;
+  const double speedMS = 60, turnRadS = 0.4;  // 24 m/s² from one moment to the next
+  for (int k = -600; k < 60; ++k) {
+    const double angle = turnRadS * std::max(k - 0.5, 0.0);
+    const Vec3d enuM =
+        k <= 0 ? Vec3d(speedMS * (k - 0.5), 0, 0) : speedMS / turnRadS * Vec3d(std::sin(angle), 1 - std::cos(angle), 0);
+    predictor.observe(k, {.position = geodeticFromEcef(originM + frame * enuM)});
+  }
+  CHECK(predictor.state().counts.teleports == 0);
+  CHECK(predictor.state().counts.outliers == 0);
+}
+
 TEST_CASE("Teleports every second, for all models") {
   for (const int states : {6, 9, 12}) {
     INFO(states);
@@ -211,6 +246,18 @@ TEST_CASE("Teleports every second, for all models") {
     CHECK(predictor.state().counts.teleports == 59);
     CHECK(worstM < 5);
   }
+}
+
+TEST_CASE("Beginning anew tells nothing of the noise") {
+  const std::vector<TrackSample> noisy = withNoise(flight(), 2, 4);
+  ViewpointPredictor predictor;
+  for (size_t i = 0; i < noisy.size(); ++i) {
+    Pose pose = noisy[i].pose;
+    pose.position.lonDeg -= static_cast<double>(i / 60 % 7) * 25;
+    predictor.observe(noisy[i].timeS, pose);
+  }
+  CHECK(predictor.state().counts.teleports == 60);
+  CHECK(predictor.state().horizontalSigmaM == Approx(2).epsilon(0.15));
 }
 
 TEST_CASE("Whatever is observed, what is predicted is finite and on time") {

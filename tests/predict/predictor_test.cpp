@@ -102,8 +102,8 @@ TEST_CASE("98 % of places are within the radius of 98 %") {
   }
   for (int i = 0; i < 5; ++i) {
     INFO(kHorizonsS[i] << " s: " << 100.0 * within[i] / all[i] << " % of " << all[i]);
-    CHECK(within[i] >= 0.97 * all[i]);
-    CHECK(within[i] <= 0.995 * all[i]);
+    CHECK(within[i] >= 0.975 * all[i]);
+    CHECK(within[i] <= 0.988 * all[i]);
   }
 }
 
@@ -196,6 +196,13 @@ TEST_CASE("Attitude: through north, over the top and over a pole") {
     CHECK(predictor.at(4).pose.headingDeg == Approx(6).margin(0.05));
     CHECK(predictor.at(4).pose.pitchDeg == Approx(2).margin(0.01));
     CHECK(predictor.at(12).pose.headingDeg == Approx(30).margin(0.2));
+  }
+  SECTION("another attitude at once is no turn to it") {
+    ViewpointPredictor predictor;
+    for (int k = 0; k <= 60; ++k)
+      predictor.observe(k / 60.0, {.position = {47, 11, 3000}, .headingDeg = k < 60 ? 10.0 : 100.0});
+    CHECK(predictor.at(3).turnRateDegS == 0);
+    CHECK(predictor.at(3).pose.headingDeg == Approx(100).margin(1e-6));
   }
   SECTION("a loop through the vertical and upside down") {
     ViewpointPredictor predictor;
