@@ -34,7 +34,8 @@ Result<Message> parse(std::span<const std::byte> datagram);
 // Beyond this a datagram is cut into fragments on Ethernet, and one lost fragment loses all.
 inline constexpr size_t kMaxMessageBytes = 1472;
 
-// Puts a message together, header first, in a format that parse() knows: 3.0 to 3.3 or 4.0.
+// Puts a message together, header first, in a format that parse() knows: that of a message received, or a host's
+// choice.
 class Builder {
  public:
   Builder(const Format& format, const IgControl& header);

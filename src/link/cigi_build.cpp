@@ -19,7 +19,7 @@ bool isOld(Version version) {
 template <class T>
 std::span<std::byte> begin(PacketBytes& bytes, const Format& format) {
   const Shape& shape = kShape<T>;
-  const size_t size = kIsHeader<T> && isOld(format.version) ? kOldHeaderBytes : shape.bytes(format.version);
+  const size_t size = shape.bytes(format.version);
   if (format.version.major == 3) {
     bytes[0] = static_cast<std::byte>(shape.id3);
     bytes[1] = static_cast<std::byte>(size);
@@ -35,7 +35,7 @@ std::span<std::byte> begin(PacketBytes& bytes, const Format& format) {
 // `minorAt3`: the byte that has the minor version in its upper half in 3.2 and 3.3. 3.0 and 3.1 reserve it as 0.
 template <class T>
 std::vector<std::byte> headerBytes(T header, const Format& format, uint8_t minorAt3) {
-  EYE_CHECK((format.version.major == 3 && format.version.minor <= 3) || (format.version == Version{4, 0}));
+  EYE_CHECK((format.version.major == 3 && format.version.minor <= kNewestMinor3) || format.version.major == 4);
   if (isOld(format.version))
     otherSidesFrame(header).reset();
   else if (!otherSidesFrame(header))

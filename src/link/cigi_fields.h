@@ -17,6 +17,7 @@ struct Version {
   uint8_t major = 3, minor = 3;
   bool operator==(const Version&) const = default;
 };
+inline constexpr uint8_t kNewestMinor3 = 3;
 
 // 4.0, or 3.x from this x on.
 constexpr bool isSince(Version version, uint8_t minor) {

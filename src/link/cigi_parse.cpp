@@ -20,7 +20,7 @@ tl::unexpected<Error> noCigi(const std::string& why) {
   return fail(ErrorKind::badData, "this is no CIGI message: " + why);
 }
 
-tl::unexpected<Error> unsupportedVersion(int version) {
+tl::unexpected<Error> unsupportedVersion(const std::string& version) {
   return fail(
       ErrorKind::unsupported,
       fmt::format("the message is CIGI {}; 3.0 to 3.3 and 4.0 are understood: set the host to one of them", version));
@@ -31,7 +31,7 @@ Result<Format> formatOf3(std::span<const std::byte> datagram) {
   const uint8_t id = byteAt(datagram, 0), version = byteAt(datagram, 2);
   if (id != kShape<IgControl>.id3 && id != kShape<StartOfFrame>.id3)
     return noCigi(fmt::format("it begins with packet {}, not with IG Control or Start of Frame", id));
-  if (version == 1 || version == 2) return unsupportedVersion(version);
+  if (version == 1 || version == 2) return unsupportedVersion(std::to_string(version));
   if (version != 3) return noCigi(fmt::format("its version would be {}", version));
 
   Format format;
@@ -43,6 +43,7 @@ Result<Format> formatOf3(std::span<const std::byte> datagram) {
   else
     return noCigi(fmt::format("its byte order mark is 0x{:04x}, neither 0x8000 nor 0x0080", order));
   const uint8_t minor = byteAt(datagram, id == kShape<IgControl>.id3 ? 4 : 5) >> 4;
+  if (minor > kNewestMinor3) return unsupportedVersion(fmt::format("3.{}", minor));
   format.version = {3, minor};
   return format;
 }
@@ -57,7 +58,7 @@ Result<Format> formatOf4(std::span<const std::byte> datagram) {
   if (id != kShape<IgControl>.id4 && id != kShape<StartOfFrame>.id4)
     return noCigi(fmt::format("it begins with packet 0x{:04x}, not with IG Control or Start of Frame", id));
   if (size != kShape<IgControl>.bytes4) return noCigi(fmt::format("its header would have {} bytes", size));
-  if (version != 4) return unsupportedVersion(version);
+  if (version != 4) return unsupportedVersion(std::to_string(version));
   format.version = {4, static_cast<uint8_t>(byteAt(datagram, 7) >> 4)};
   return format;
 }
@@ -137,17 +138,13 @@ class MessageReader {
   template <class T>
   bool fill(T& packet, std::span<const std::byte> bytes) {
     const Shape& shape = kShape<T>;
-    size_t expected = shape.bytes(message_.format.version);
-    if constexpr (kIsHeader<T>) {
-      if (bytes.size() < expected)
-        expected = kOldHeaderBytes;
-      else
-        otherSidesFrame(packet).emplace();
-    }
+    const size_t expected = shape.bytes(message_.format.version);
     if (bytes.size() < expected) {
       reject(fmt::format("{} has {} bytes instead of {}", shape.name(message_.format.version), bytes.size(), expected));
       return false;
     }
+    if constexpr (kIsHeader<T>)
+      if (isSince(message_.format.version, 2)) otherSidesFrame(packet).emplace();
     FieldReader reader(bytes, message_.format);
     layout(reader, packet);
     if (reader.problem()) reject(fmt::format("{}: {}", shape.name(message_.format.version), *reader.problem()));

@@ -5,69 +5,69 @@
 
 namespace eye::cigi {
 
+// The headers of 3.0 and 3.1 are shorter: they end before the frame of the other side.
+inline constexpr uint8_t kOldHeaderBytes = 16;
+
 struct Shape {
-  const char* name3;
-  uint8_t id3, bytes3;
-  const char* name4;
-  uint16_t id4;
-  uint8_t bytes4;
+  uint8_t id3 = 0, bytes3 = 0;
+  uint16_t id4 = 0;
+  uint8_t bytes4 = 0;
+  const char* name3 = nullptr;
+  const char* name4 = name3;
 
   constexpr const char* name(Version version) const { return version.major == 3 ? name3 : name4; }
   constexpr uint16_t id(Version version) const { return version.major == 3 ? id3 : id4; }
-  constexpr size_t bytes(Version version) const { return version.major == 3 ? bytes3 : bytes4; }
+  constexpr bool isHeader() const { return id4 == 0x0000 || id4 == 0xffff; }
+  constexpr size_t bytes(Version version) const {
+    if (isHeader() && !isSince(version, 2)) return kOldHeaderBytes;
+    return version.major == 3 ? bytes3 : bytes4;
+  }
 };
 
-// Sources for 3.x: Boeing's ICD 3.3 as Wireshark's packet-cigi.c reads it, and captures of the CIGI Class Library
-// (CCL). Sources for 4.0: CCL 4.0.2's Pack functions and a capture of it; for Acceleration Control and the extended
-// answers, which that capture lacks, CCL's CigiAccelerationCtrlV4, CigiHatHotXRespV4 and CigiLosXRespV4 and the structs
-// of Boeing's Host Emulator for 4.0, which agree.
+// Sources for 3.x: Boeing's ICD 3.3 as Wireshark's packet-cigi.c reads it, and sessions of the CIGI Class Library
+// (CCL). Sources for 4.0: CCL 4.0.2's Pack functions and a session of it; for Acceleration Control, which that session
+// lacks, CCL's CigiAccelerationCtrlV4, and Boeing's Host Emulator, whose structs for 4.0 agree with all of these.
 template <class T>
 inline constexpr Shape kShape{};
 
 template <>
-inline constexpr Shape kShape<IgControl>{"IG Control", 1, 24, "IG Control", 0x0000, 24};
+inline constexpr Shape kShape<IgControl>{1, 24, 0x0000, 24, "IG Control"};
 template <>
-inline constexpr Shape kShape<EntityTraits>{"Entity Control", 2, 48, "Entity Control", 0x0025, 16};
+inline constexpr Shape kShape<EntityTraits>{2, 48, 0x0025, 16, "Entity Control"};
 template <>
-inline constexpr Shape kShape<EntityPlace>{"Entity Control", 2, 48, "Entity Position", 0x0001, 48};
+inline constexpr Shape kShape<EntityPlace>{2, 48, 0x0001, 48, "Entity Control", "Entity Position"};
 template <>
-inline constexpr Shape kShape<ViewControl>{"View Control", 16, 32, "View Control", 0x000f, 40};
+inline constexpr Shape kShape<ViewControl>{16, 32, 0x000f, 40, "View Control"};
 template <>
-inline constexpr Shape kShape<ViewDefinition>{"View Definition", 21, 32, "View Definition", 0x0014, 40};
+inline constexpr Shape kShape<ViewDefinition>{21, 32, 0x0014, 40, "View Definition"};
 template <>
-inline constexpr Shape kShape<Velocity>{"Rate Control", 8, 32, "Velocity Control", 0x0007, 32};
+inline constexpr Shape kShape<Velocity>{8, 32, 0x0007, 32, "Rate Control", "Velocity Control"};
 template <>
-inline constexpr Shape kShape<Acceleration>{"Trajectory Definition", 20, 24, "Acceleration Control", 0x0013, 32};
+inline constexpr Shape kShape<Acceleration>{20, 24, 0x0013, 32, "Trajectory Definition", "Acceleration Control"};
 template <>
-inline constexpr Shape kShape<CelestialSphere>{"Celestial Sphere Control", 9,      16,
-                                               "Celestial Sphere Control", 0x0008, 24};
+inline constexpr Shape kShape<CelestialSphere>{9, 16, 0x0008, 24, "Celestial Sphere Control"};
 template <>
-inline constexpr Shape kShape<Atmosphere>{"Atmosphere Control", 10, 32, "Atmosphere Control", 0x0009, 32};
+inline constexpr Shape kShape<Atmosphere>{10, 32, 0x0009, 32, "Atmosphere Control"};
 template <>
-inline constexpr Shape kShape<Weather>{"Weather Control", 12, 56, "Weather Control", 0x000b, 72};
+inline constexpr Shape kShape<Weather>{12, 56, 0x000b, 72, "Weather Control"};
 template <>
-inline constexpr Shape kShape<HeightRequest>{"HAT/HOT Request", 24, 32, "HAT/HOT Request", 0x0017, 40};
+inline constexpr Shape kShape<HeightRequest>{24, 32, 0x0017, 40, "HAT/HOT Request"};
 template <>
-inline constexpr Shape kShape<SightSegmentRequest>{"Line of Sight Segment Request", 25,     64,
-                                                   "Line of Sight Segment Request", 0x0018, 72};
+inline constexpr Shape kShape<SightSegmentRequest>{25, 64, 0x0018, 72, "Line of Sight Segment Request"};
 template <>
-inline constexpr Shape kShape<SightVectorRequest>{"Line of Sight Vector Request", 26,     56,
-                                                  "Line of Sight Vector Request", 0x0019, 64};
+inline constexpr Shape kShape<SightVectorRequest>{26, 56, 0x0019, 64, "Line of Sight Vector Request"};
 template <>
-inline constexpr Shape kShape<StartOfFrame>{"Start of Frame", 101, 24, "Start of Frame", 0xffff, 24};
+inline constexpr Shape kShape<StartOfFrame>{101, 24, 0xffff, 24, "Start of Frame"};
 template <>
-inline constexpr Shape kShape<HeightResponse>{"HAT/HOT Response", 102, 16, "HAT/HOT Response", 0x0fff, 16};
+inline constexpr Shape kShape<HeightResponse>{102, 16, 0x0fff, 16, "HAT/HOT Response"};
 template <>
-inline constexpr Shape kShape<HeightExtendedResponse>{"HAT/HOT Extended Response", 103,    40,
-                                                      "HAT/HOT Extended Response", 0x0ffe, 40};
+inline constexpr Shape kShape<HeightExtendedResponse>{103, 40, 0x0ffe, 40, "HAT/HOT Extended Response"};
 template <>
-inline constexpr Shape kShape<SightResponse>{"Line of Sight Response", 104, 16, "Line of Sight Response", 0x0ffd, 24};
+inline constexpr Shape kShape<SightResponse>{104, 16, 0x0ffd, 24, "Line of Sight Response"};
 template <>
-inline constexpr Shape kShape<SightExtendedResponse>{"Line of Sight Extended Response", 105,    56,
-                                                     "Line of Sight Extended Response", 0x0ffc, 64};
+inline constexpr Shape kShape<SightExtendedResponse>{105, 56, 0x0ffc, 64, "Line of Sight Extended Response"};
 
-// The headers of 3.0 and 3.1 are shorter: they end before the frame of the other side.
-inline constexpr uint8_t kOldHeaderBytes = 16;
+// What the headers of 3.0 and 3.1 do not have.
 inline std::optional<uint32_t>& otherSidesFrame(IgControl& header) {
   return header.igFrame;
 }
