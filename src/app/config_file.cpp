@@ -1,6 +1,7 @@
 #include "app/config_file.h"
 
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -20,13 +21,10 @@ std::optional<ConfigWord> wordOf(const toml::node& node) {
 
 }  // namespace
 
-Result<ConfigValues> readConfigFile(const std::string& path) {
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed))
-    return fail(ErrorKind::usage, fmt::format("{}: no such configuration file; check --config", path));
+Result<ConfigValues> parseConfig(std::string_view text, const std::string& path) {
   toml::table table;
   try {
-    table = toml::parse_file(path);
+    table = toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     return fail(ErrorKind::usage, fmt::format("{}:{}:{}: {}; mend the file's TOML", path, error.source().begin.line,
                                               error.source().begin.column, error.description()));
@@ -51,6 +49,16 @@ Result<ConfigValues> readConfigFile(const std::string& path) {
                                                 path, node.source().begin.line, name));
   }
   return values;
+}
+
+Result<ConfigValues> readConfigFile(const std::string& path) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed))
+    return fail(ErrorKind::usage, fmt::format("{}: no such configuration file; check --config", path));
+  std::ifstream file(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (!file) return fail(ErrorKind::usage, fmt::format("{}: cannot be read; check --config and its rights", path));
+  return parseConfig(text, path);
 }
 
 }  // namespace eye

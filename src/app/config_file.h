@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -16,6 +17,8 @@ struct ConfigWord {
   ConfigType type = ConfigType::text;
 };
 using ConfigValues = std::map<std::string, std::vector<ConfigWord>>;
+// `path`: for complaints.
+Result<ConfigValues> parseConfig(std::string_view text, const std::string& path);
 Result<ConfigValues> readConfigFile(const std::string& path);
 
 }  // namespace eye

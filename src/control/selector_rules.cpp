@@ -1,6 +1,7 @@
 #include "control/selector_rules.h"
 
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -59,13 +60,10 @@ std::optional<Error> readAdaptive(const std::string& path, const toml::table* se
 
 }  // namespace
 
-Result<SelectorRules> loadSelectorRules(const std::string& path) {
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed))
-    return fail(ErrorKind::usage, fmt::format("{}: no such file of selector rules; check its path", path));
+Result<SelectorRules> parseSelectorRules(std::string_view text, const std::string& path) {
   toml::table file;
   try {
-    file = toml::parse_file(path);
+    file = toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     return fail(ErrorKind::usage, fmt::format("{}:{}:{}: {}; mend the file's TOML", path, error.source().begin.line,
                                               error.source().begin.column, error.description()));
@@ -82,6 +80,16 @@ Result<SelectorRules> loadSelectorRules(const std::string& path) {
   if (!error) error = readAdaptive(path, adaptive, rules.adaptive);
   if (error) return tl::unexpected<Error>(*error);
   return rules;
+}
+
+Result<SelectorRules> loadSelectorRules(const std::string& path) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed))
+    return fail(ErrorKind::usage, fmt::format("{}: no such file of selector rules; check its path", path));
+  std::ifstream file(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (!file) return fail(ErrorKind::usage, fmt::format("{}: cannot be read; check its rights", path));
+  return parseSelectorRules(text, path);
 }
 
 }  // namespace eye

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -59,7 +60,8 @@ struct SelectorRules {
 };
 
 // From TOML. Keys that are not given keep their defaults; what is unknown, mistyped, out of range or out of order is an
-// error of kind usage, in one line with file, line and what would be right.
+// error of kind usage, in one line with file (`path`), line and what would be right.
+Result<SelectorRules> parseSelectorRules(std::string_view text, const std::string& path);
 Result<SelectorRules> loadSelectorRules(const std::string& path);
 
 }  // namespace eye
