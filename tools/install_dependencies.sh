@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that Eyepoint needs; does nothing, and touches no network, when all of them are there.
-#   tools/install_dependencies.sh [run|test]     run (default): build and fly; test: also build and run the tests
+#   tools/install_dependencies.sh [run|test|fuzz]   run (default): build and fly; test: also build and run the tests;
+#                                                   fuzz: build and run the fuzzers
 set -euo pipefail
 exec </dev/null # no question is ever asked, and a closed stdin is no obstacle
 
@@ -14,15 +15,20 @@ build_and_fly=(
 tests_only=(
   clang-format clang-tidy shellcheck # the house style
   sqlite3                            # damages databases on purpose
+  tshark                             # judges the packets that are sent
   vulkan-validationlayers
   xauth xvfb # a display for the window's tests
+)
+fuzz_only=(
+  clang libclang-rt-14-dev # libFuzzer
 )
 
 case "${1:-run}" in
   run) packages=("${build_and_fly[@]}") ;;
   test) packages=("${build_and_fly[@]}" "${tests_only[@]}") ;;
+  fuzz) packages=("${build_and_fly[@]}" "${fuzz_only[@]}") ;;
   *)
-    echo "install_dependencies.sh: '$1' is neither run nor test" >&2
+    echo "install_dependencies.sh: '$1' is none of run, test and fuzz" >&2
     exit 2
     ;;
 esac
