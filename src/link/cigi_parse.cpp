@@ -120,7 +120,7 @@ class MessageReader {
     if (kIsHeader<T> && !isFirst_)
       reject(fmt::format("{}: the message has one already", shape.name(message_.format.version)));
     else if (fill(packet, bytes))
-      message_.packets.emplace_back(std::move(packet));
+      message_.packets.emplace_back(packet);
     return true;
   }
 
@@ -131,7 +131,7 @@ class MessageReader {
     if (hasTraits && !fill(entity.traits.emplace(), bytes)) return true;
     if (hasPlace && !fill(entity.place.emplace(), bytes)) return true;
     FieldReader(bytes, message_.format).u16(kEntityId, entity.id);
-    message_.packets.emplace_back(std::move(entity));
+    message_.packets.emplace_back(entity);
     return true;
   }
 
