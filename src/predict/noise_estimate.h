@@ -1,6 +1,7 @@
 // Process and measurement noise, as configured or as the stream of innovations shows them.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 namespace eye {
@@ -15,6 +16,8 @@ class NoiseEstimate {
   NoiseEstimate(double processNoise, double measurementSigmaM, bool adapt);
 
   double processNoise() const { return processNoise_; }
+  // For the time to come: what a pilot will do is not in the calm before it, so never less than configured.
+  double futureProcessNoise() const { return std::max(processNoise_, configuredProcessNoise_); }
   double measurementVarianceM2() const { return measurementVarianceM2_; }
   // The innovations of one observation, over their standard deviations: one an axis that shares these noises, at most
   // two.

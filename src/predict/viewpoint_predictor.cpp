@@ -162,7 +162,10 @@ Prediction ViewpointPredictor::at(double timeS) const {
   result.horizonS = std::isfinite(timeS) ? std::clamp(timeS - believedS_, kLeastHorizonS, kMostHorizonS) : 0;
   result.timeS = believedS_ + result.horizonS;
 
-  const PositionEstimate estimate = position_.at(result.horizonS, noise());
+  AxisNoise future = noise();
+  future.processNoise[0] = future.processNoise[1] = horizontal_.futureProcessNoise();
+  future.processNoise[2] = vertical_.futureProcessNoise();
+  const PositionEstimate estimate = position_.at(result.horizonS, future);
   result.ecefM = estimate.ecefM;
   result.velocityEcefMS = estimate.velocityEcefMS;
   result.covarianceEcefM2 = estimate.covarianceEcefM2;
