@@ -117,6 +117,7 @@ TEST_CASE("Three blocks give what the paper's whole matrices give") {
     PositionFilter filter(states);
     filter.start(originM, frame * Vec3d(20, 30, 0), 100, noise);
 
+    std::array<AxisKalman, 3> blocks = filter.axes();  // the same, without a frame
     // Begins as the filter does before its first step.
     PaperPredictor paper{fullTransition(states, t),
                          positionOnly(states),
@@ -138,6 +139,20 @@ TEST_CASE("Three blocks give what the paper's whole matrices give") {
       filter.predict(t, noise);
       filter.update(filter.innovation(originM + frame * measuredM, noise), noise);
       paper.step(Eigen::Vector3d(measuredM.x, measuredM.y, measuredM.z));
+
+      double blockOff = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        AxisKalman& block = blocks[static_cast<size_t>(axis)];
+        block.predict(t, density);
+        block.update(measuredM[axis] - block.state(0), sigmaM * sigmaM);
+        AxisKalman later = block;
+        later.predict(t, density);
+        for (int i = 0; i < states; ++i) {
+          const double expected = paper.x(3 * i + axis);
+          blockOff = std::max(blockOff, std::abs(later.state(i) - expected) / (1 + std::abs(expected)));
+        }
+      }
+      REQUIRE(blockOff < 1e-9);
 
       PositionFilter next = filter;
       next.predict(t, noise);
