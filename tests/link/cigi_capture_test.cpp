@@ -18,7 +18,7 @@ using namespace eye::cigi;
 
 // Nothing, with a warning, where there are no recordings.
 std::optional<std::vector<std::byte>> recording(const std::string& name) {
-  const std::string path = std::string(EYE_TEST_DATA) + "/captures/" + name;
+  const std::string path = std::string(EYE_TEST_DATA) + "/" + name;
   auto file = readTrackFile(path);
   if (!file) {
     WARN("no recording " << path);
@@ -70,8 +70,8 @@ void compare(const Dissected& judged, const Dissected& ours) {
 }
 
 TEST_CASE("CIGI 3.3: a recorded session is understood to its last packet, with Wireshark's values") {
-  const auto file = recording("cigi33_ccl_c1723.pcap");
-  const auto golden = recording("cigi33_golden_dissection.txt");
+  const auto file = recording("captures/cigi33_ccl_c1723.pcap");
+  const auto golden = recording("captures/cigi33_golden_dissection.txt");
   if (!file || !golden) return;
   const Session session = sessionOf(*file, {{3, 3}, std::endian::little});
   CHECK(session.messages.size() == 7200);
@@ -90,7 +90,7 @@ TEST_CASE("CIGI 3.3: a recorded session is understood to its last packet, with W
 }
 
 TEST_CASE("CIGI 4.0: a recorded session says what the same flight says in 3.3") {
-  const auto file3 = recording("cigi33_ccl_c1723.pcap"), file4 = recording("cigi40_ccl_c1723.pcap");
+  const auto file3 = recording("captures/cigi33_ccl_c1723.pcap"), file4 = recording("captures/cigi40_ccl_c1723.pcap");
   if (!file3 || !file4) return;
   const Session in3 = sessionOf(*file3, {{3, 3}, std::endian::little});
   const Session in4 = sessionOf(*file4, {{4, 0}, std::endian::little});
@@ -113,6 +113,20 @@ TEST_CASE("CIGI 4.0: a recorded session says what the same flight says in 3.3") 
     CHECK(there == expected);
   }
   CHECK(places == 3600);
+}
+
+TEST_CASE("CIGI 2: a recorded session is refused by name") {
+  const auto file = recording("cigi/cigi2.pcap");
+  if (!file) return;
+  const auto capture = parsePcap(*file);
+  REQUIRE(capture);
+  REQUIRE(capture->datagrams.size() == 949);
+  for (const auto& datagram : capture->datagrams) {
+    const auto message = parse(datagram.payload);
+    REQUIRE_FALSE(message);
+    REQUIRE(message.error().kind == ErrorKind::unsupported);
+    REQUIRE(message.error().message.starts_with("the message is CIGI 2;"));
+  }
 }
 
 TEST_CASE("CIGI 3.0 to 3.3: Wireshark reads what is built as it was meant") {
