@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/viewpoint_tracker.h"
 #include "control/selector_input.h"
 #include "geo/pose.h"
 #include "link/state_source.h"
@@ -29,6 +30,9 @@ struct FrameRecord {
   std::optional<glm::ivec2> depthMapPx;  // its depth map; nothing: it did not run
   std::optional<Decision> decision;      // the selector's, where it was asked
   PagingCounts paging;
+  PagingPace pace;
+  double coarsening = 1;        // of the tolerance, by the pager
+  PredictionRecord prediction;  // horizonS 0: none
   HostCounts host;
   double hostAgeMs = -1;  // from the newest packet's arrival to the frame's completion; negative: no packet yet
 };

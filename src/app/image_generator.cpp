@@ -83,8 +83,7 @@ bool Sources::allFixed() const {
 
 Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& options,
                                                                std::unique_ptr<StateSource> source) {
-  auto made = std::unique_ptr<ImageGenerator>(new ImageGenerator);
-  made->options_ = options;
+  auto made = std::unique_ptr<ImageGenerator>(new ImageGenerator(options));
   Result<Sources> sources = source != nullptr ? Sources::of(std::move(source)) : Sources::open(options.hosts);
   if (!sources) return tl::unexpected(sources.error());
   made->sources_ = std::move(*sources);
@@ -149,9 +148,9 @@ Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
 }
 
 // Walks the forest and exchanges with the paging thread; offline again and again until nothing more comes.
-void ImageGenerator::select() {
+void ImageGenerator::select(const LookAhead* ahead) {
   const bool culls = options_.culling != CullingMode::none;
-  const LodOptions lod{.ssePx = options_.ssePx,
+  const LodOptions lod{.ssePx = options_.ssePx * pager_->coarsening(),
                        .culling = culls ? CullingScheme::frustum : CullingScheme::none,
                        .horizon = options_.horizon};
   int arrived = 0;
@@ -159,17 +158,22 @@ void ImageGenerator::select() {
     const TraceScope scope("select");
     pager_->cache().beginFrame();
     selectChunks(pager_->cache(), view_, lod, selection_);
-    arrived = pager_->exchange(selection_);
+    arrived = pager_->exchange(selection_, ahead);
   } while (options_.offline && arrived > 0);
 }
 
+DrawnKey ImageGenerator::keyOf(const DrawnChunk& drawn) const {
+  const TerrainCache& cache = pager_->cache();
+  return {cache.node(drawn.node).meta.key.code(), cache.node(drawn.textureNode).meta.key.code(), drawn.skirtMask,
+          drawn.skirtDepthM};
+}
+
+// What is loaded ahead does not show: only what the selection draws counts.
 bool ImageGenerator::sameAsLast(const Lighting& lighting) const {
-  const PagingCounts paging = pager_->counts();
   return drawn_ && drawn_->view == view_ && drawn_->lighting.sunDirectionEcef == lighting.sunDirectionEcef &&
-         drawn_->lighting.visibilityM == lighting.visibilityM && drawn_->loaded == paging.loaded &&
-         drawn_->evicted == paging.evicted &&
-         std::equal(drawn_->nodes.begin(), drawn_->nodes.end(), selection_.draws.begin(), selection_.draws.end(),
-                    [](uint32_t node, const DrawnChunk& drawn) { return node == drawn.node; });
+         drawn_->lighting.visibilityM == lighting.visibilityM &&
+         std::equal(drawn_->chunks.begin(), drawn_->chunks.end(), selection_.draws.begin(), selection_.draws.end(),
+                    [this](const DrawnKey& key, const DrawnChunk& drawn) { return key == keyOf(drawn); });
 }
 
 // Selection, visibility and depth map stay as they were drawn last. From the start of a run (--debug-view) only when
@@ -196,7 +200,12 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   const bool overlay = (keys.overlay % 2 != 0) != options_.overlay;
   const DebugView debug = switched(options_.debugView, keys);
   const bool frozen = isFrozen(debug);
-  if (!frozen) select();
+  const double nowS = sources_.anyLive() ? static_cast<double>(beganNs) * 1e-9 : timeS;
+  tracker_.observe(host, pose_, nowS);
+  if (!frozen) {
+    const LookAhead ahead = tracker_.lookAhead(view_);
+    select(&ahead);
+  }
 
   const bool seen = !renderer_->minimised() || readColour || readDepth;
   const bool draw =
@@ -237,18 +246,15 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
     record.depthMapPx = output_.depthMapPx;
     if (!frozen) depthMap_.learn(output_);
     endedNs = output_.completedNs;
-    const PagingCounts paging = pager_->counts();
     drawn_ = Drawn{.view = view_,
                    .lighting = lighting,
-                   .nodes = {},
-                   .loaded = paging.loaded,
-                   .evicted = paging.evicted,
+                   .chunks = {},
                    .readColour = readColour,
                    .readDepth = readDepth,
                    .overlay = overlay,
                    .depthMapPx = record.depthMapPx,
                    .debug = debug};
-    for (const DrawnChunk& drawn : selection_.draws) drawn_->nodes.push_back(drawn.node);
+    for (const DrawnChunk& drawn : selection_.draws) drawn_->chunks.push_back(keyOf(drawn));
   } else {
     endedNs = monotonicNs();
     renderer_->presentAgain();
@@ -267,6 +273,9 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   record.draws = output_.draws;
   record.selection = selection_.counts;
   record.paging = pager_->counts();
+  record.pace = pager_->pace();
+  record.coarsening = pager_->coarsening();
+  record.prediction = tracker_.record(record.pace.memoryS);
   record.host = host.counts;
   if (host.arrivedNs != 0) record.hostAgeMs = static_cast<double>(endedNs - host.arrivedNs) * 1e-6;
   overlay_.add(record);

@@ -9,6 +9,7 @@
 #include "app/frame_record.h"
 #include "app/options.h"
 #include "app/overlay.h"
+#include "app/viewpoint_tracker.h"
 #include "link/state_source.h"
 #include "paging/pager.h"
 #include "render/renderer.h"
@@ -28,6 +29,14 @@ class Sources {
  private:
   std::vector<std::unique_ptr<StateSource>> sources_;
   std::string description_;
+};
+
+// What of a drawn chunk shows in the picture.
+struct DrawnKey {
+  uint64_t chunk = 0, imagery = 0;  // tile codes
+  uint8_t skirtMask = 0;
+  std::array<double, 4> skirtDepthM{};
+  bool operator==(const DrawnKey&) const = default;
 };
 
 class ImageGenerator {
@@ -52,14 +61,16 @@ class ImageGenerator {
   Renderer& renderer() { return *renderer_; }
 
  private:
-  ImageGenerator() = default;
+  explicit ImageGenerator(const Options& options) : options_(options), tracker_(options_) {}
   View currentView(const Pose& pose) const;
   Lighting currentLighting(const SourceSample& host) const;
-  void select();
+  void select(const LookAhead* ahead);
   bool isFrozen(const DebugView& debug) const;
+  DrawnKey keyOf(const DrawnChunk& drawn) const;
   bool sameAsLast(const Lighting& lighting) const;
 
-  Options options_;
+  const Options options_;
+  ViewpointTracker tracker_;
   Sources sources_;
   std::unique_ptr<Renderer> renderer_;
   std::unique_ptr<Pager> pager_;  // after the renderer: it gives its chunks back to it
@@ -79,8 +90,7 @@ class ImageGenerator {
   struct Drawn {
     View view;
     Lighting lighting;
-    std::vector<uint32_t> nodes;
-    uint64_t loaded = 0, evicted = 0;
+    std::vector<DrawnKey> chunks;
     bool readColour = false, readDepth = false, overlay = false;
     std::optional<glm::ivec2> depthMapPx;
     DebugView debug;

@@ -253,6 +253,29 @@ void addQuality(CLI::App& app, Options& o) {
       ->type_name("ellipsoid/paper")
       ->check(CLI::IsMember({"ellipsoid", "paper"}))
       ->group(group);
+  app.add_option_function<std::string>(
+         "--predictor",
+         [&o](const std::string& t) { o.predictor = t == "none" ? PredictorMode::none : PredictorMode::kalman; },
+         "Terrain is loaded ahead along the predicted flight: kalman (default), or around the eye alone: none")
+      ->type_name("kalman/none")
+      ->check(CLI::IsMember({"kalman", "none"}))
+      ->group(group);
+  app.add_option("--predictor-states", o.predictorStates,
+                 "The predictor's model: 6 (constant velocity), 9 (constant acceleration, default), 12 (constant jerk)")
+      ->type_name("6/9/12")
+      ->check(wholeWithin(6, 12))
+      ->check(CLI::IsMember({6, 9, 12}))
+      ->group(group);
+  app.add_option("--process-noise", o.processNoise,
+                 "What the predictor's model leaves out, m2/s5 with 9 states; default: estimated from the flight")
+      ->type_name("Q")
+      ->check(within(1e-9, 1e9))
+      ->group(group);
+  app.add_option("--measurement-sigma", o.measurementSigmaM,
+                 "Noise of the host's positions, metres; default: estimated from the flight")
+      ->type_name("M")
+      ->check(within(1e-6, 1e4))
+      ->group(group);
   app.add_option("--cache-ram", o.cacheRamMiB, "Budget for decoded terrain in memory; default 96")
       ->type_name("MIB")
       ->check(wholeWithin(8, 1 << 20))
@@ -390,12 +413,13 @@ std::string Options::settingsLine() const {
                                                       (*frustumDeg)[2], (*frustumDeg)[3])
                                         : fmt::format("fov={}", fovDeg);
   return fmt::format(
-      "size={}x{} {} near={} sse={} culling={} depth-map={} selector={}{} horizon={} cache-ram={} cache-gpu={} "
-      "offline={} redraw={}",
+      "size={}x{} {} near={} sse={} culling={} depth-map={} selector={}{} horizon={} predictor={} cache-ram={} "
+      "cache-gpu={} offline={} redraw={}",
       widthPx, heightPx, angles, nearM, ssePx, nameOf(culling), map,
       selectorMode == SelectorMode::paper ? "paper" : "adaptive", selectorRules.empty() ? "" : ":" + selectorRules,
-      horizon == HorizonTest::paper ? "paper" : "ellipsoid", cacheRamMiB, cacheGpuMiB, offline,
-      redrawAlways ? "always" : "changed");
+      horizon == HorizonTest::paper ? "paper" : "ellipsoid",
+      predictor == PredictorMode::none ? "none" : fmt::format("kalman-{}", predictorStates), cacheRamMiB, cacheGpuMiB,
+      offline, redrawAlways ? "always" : "changed");
 }
 
 ParsedOptions parseOptions(int argc, const char* const* argv) {

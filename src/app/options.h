@@ -15,6 +15,7 @@
 namespace eye {
 
 enum class CullingMode { none, frustum, dynamic };
+enum class PredictorMode { none, kalman };
 enum class DepthMapMode { automatic, off, fixed };
 
 struct Options {
@@ -48,6 +49,10 @@ struct Options {
   std::optional<SelectorMode> selectorMode;         // instead of the rules' own
   HorizonTest horizon = HorizonTest::ellipsoid;
   uint64_t cacheRamMiB = 96, cacheGpuMiB = 160;
+  PredictorMode predictor = PredictorMode::kalman;
+  int predictorStates = 9;                                // 6, 9 or 12
+  std::optional<double> processNoise, measurementSigmaM;  // of the predictor; unset: estimated from the flight
+  double regionWidening = 1;  // of the distances within which terrain is loaded ahead; benchmarks compare others
 
   // Light and air. Local solar time at the eye, hours; unset visibility: the host's, else 60 km.
   double timeOfDayH = 9.0;

@@ -22,6 +22,11 @@ Json membershipOf(const std::optional<Decision>& decision) {
   return {{"altitude", decision->altitudeMembership}, {"pitch", decision->pitchMembership}, {"sum", decision->sum}};
 }
 
+Json predictionOf(const PredictionRecord& r) {
+  if (r.horizonS <= 0) return {{"horizon_s", nullptr}, {"error_m", nullptr}, {"radius_m", nullptr}};
+  return {{"horizon_s", r.horizonS}, {"error_m", r.errorM ? Json(*r.errorM) : Json(nullptr)}, {"radius_m", r.radiusM}};
+}
+
 Json jsonOf(const FrameRecord& r) {
   Json passes = Json::object();
   for (const PassTime& pass : r.passes) passes[pass.name] = pass.ms;
@@ -64,8 +69,18 @@ Json jsonOf(const FrameRecord& r) {
                 {"gpu_bytes", r.paging.gpuBytes},
                 {"missing", s.missing},
                 {"damaged", r.paging.damaged},
-                {"bytes_read", r.paging.bytesRead}}},
-              {"prediction", {{"horizon_s", nullptr}, {"error_m", nullptr}, {"radius_m", nullptr}}},
+                {"bytes_read", r.paging.bytesRead},
+                {"cached", r.paging.cached},
+                {"refused", r.paging.refused},
+                {"coarsening", r.coarsening},
+                {"interval_s", r.pace.interval.lengthS},
+                {"keeps_up", r.pace.interval.keepsUp},
+                {"memory_s", r.pace.memoryS},
+                {"cache_s", r.pace.cacheS},
+                {"read_bytes_s", r.pace.rates.readBytesS},
+                {"decode_bytes_s", r.pace.rates.decodeBytesS},
+                {"demand_bytes_s", r.pace.rates.demandBytesS}}},
+              {"prediction", predictionOf(r.prediction)},
               {"host",
                {{"packets", r.host.packets},
                 {"rejected", r.host.rejected},

@@ -25,8 +25,11 @@ size_t ChunkGroup::bytes() const {
   return sum;
 }
 
-Result<LoadedChunk> loadChunk(const DatabaseReader& reader, const TileKey& key) {
+Result<LoadedChunk> loadChunk(const DatabaseReader& reader, const TileKey& key, LoadCost* cost) {
+  const int64_t beganNs = monotonicNs();
+  const uint64_t readBefore = reader.bytesRead();
   Result<StoredChunk> stored = reader.read(key);
+  const int64_t readNs = monotonicNs();
   if (!stored) return tl::unexpected(stored.error());
   if (stored->meta.key != key) return tl::unexpected(damaged(reader, key, "holds another tile"));
 
@@ -46,15 +49,20 @@ Result<LoadedChunk> loadChunk(const DatabaseReader& reader, const TileKey& key) 
     if (!texels) return tl::unexpected(damaged(reader, key, texels.error().message));
     loaded.texels = std::move(*texels);
   }
+  if (cost != nullptr) {
+    cost->readS += static_cast<double>(readNs - beganNs) * 1e-9;
+    cost->decodeS += static_cast<double>(monotonicNs() - readNs) * 1e-9;
+    cost->fileBytes += reader.bytesRead() - readBefore;
+  }
   return loaded;
 }
 
-Result<ChunkGroup> loadGroup(const DatabaseReader& reader, const TileKey& parent) {
+Result<ChunkGroup> loadGroup(const DatabaseReader& reader, const TileKey& parent, LoadCost* cost) {
   const TraceScope trace("load group");
   ChunkGroup group;
   group.parent = parent;
   for (const TileKey& key : parent.children()) {
-    Result<LoadedChunk> chunk = loadChunk(reader, key);
+    Result<LoadedChunk> chunk = loadChunk(reader, key, cost);
     if (!chunk) return tl::unexpected(chunk.error());
     group.chunks.push_back(std::move(*chunk));
   }

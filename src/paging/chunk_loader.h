@@ -16,8 +16,15 @@ struct ChunkGroup {
   size_t bytes() const;
 };
 
+// What loading took.
+struct LoadCost {
+  double readS = 0, decodeS = 0;
+  uint64_t fileBytes = 0;
+};
+
 // Any damage is badData or notFound with the tile's name.
-Result<LoadedChunk> loadChunk(const DatabaseReader& reader, const TileKey& key);
-Result<ChunkGroup> loadGroup(const DatabaseReader& reader, const TileKey& parent);
+// `cost`, where given, is added to.
+Result<LoadedChunk> loadChunk(const DatabaseReader& reader, const TileKey& key, LoadCost* cost = nullptr);
+Result<ChunkGroup> loadGroup(const DatabaseReader& reader, const TileKey& parent, LoadCost* cost = nullptr);
 
 }  // namespace eye

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_set>
 
-#include "paging/chunk_loader.h"
+#include "paging/coarsening.h"
+#include "paging/pace_meter.h"
 #include "paging/paging_thread.h"
 #include "paging/ram_cache.h"
+#include "paging/residency.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -19,72 +22,81 @@ constexpr uint64_t kIdleFrames = 8;
 // Of the RAM budget, kept free for results that are on their way; a group that needs more gets it when it is known.
 constexpr uint64_t kRoomShare = 4;
 
-ResidentChunk residentFrom(const LoadedChunk& chunk, const GpuChunk& gpu) {
-  return {chunk.meta, gpu, chunk.skirts, chunk.surfaceIndexCount};
-}
-
 }  // namespace
 
 struct Pager::Impl {
-  Impl(DatabaseReader reader, GpuStore& gpuStore, const PagerOptions& pagerOptions)
-      : gpu(gpuStore), options(pagerOptions), info(reader.info()), thread(std::move(reader), options.ramBudgetBytes) {}
-  ~Impl();
+  Impl(DatabaseReader reader, GpuStore& gpu, const PagerOptions& pagerOptions)
+      : options(pagerOptions),
+        info(reader.info()),
+        // What was evicted is, if it is still there, the only copy now.
+        residency(gpu, [this](const TileKey& parent) { ram.use(parent); }),
+        thread(std::move(reader), options.ramBudgetBytes) {}
 
-  // The groups that a selection wants and that may yet come, most urgent first.
-  void listWantedGroups(const Selection& selection);
+  // Groups that are not resident, most urgent first: what the selection misses, behind it what the schedule has ahead.
+  void listWanted(const Selection& selection);
+  void listAhead();
+  bool isOpen(const TileKey& parent) const;
   void takeResults();
   void trimRam();
   // What is wanted and not in RAM, from `begin` on; nothing while the GPU has no room for what is there already.
   void sendRequests(size_t begin);
-  // The children of `parent` into the forest; false where there is no room for them.
-  bool takeIn(const ChunkGroup& group);
-  std::optional<std::vector<ResidentChunk>> upload(const ChunkGroup& group);
-  bool canEvict();
-  bool evictOne();
-  void evict(uint32_t parent);
   int takeInWithinBudget();
+  int takeInAhead();
   int takeInAll();
 
-  GpuStore& gpu;
+  struct Wanted {
+    TileKey parent;
+    double neededAtS;  // on the look-ahead's clock
+    bool inMemory;     // is to go to the GPU, not only to be decoded
+    bool operator==(const TileKey& key) const { return parent == key; }
+  };
+
   const PagerOptions options;
   const DatabaseInfo info;
-  TerrainCache cache;
   RamCache ram;
+  Residency residency;
+  Schedule schedule;
+  PaceMeter pace;
+  Coarsening coarsening;
   PagingCounts counts;
   std::unordered_set<TileKey> lost;   // parents whose children cannot be had: damaged, or too big for the RAM budget
   std::unordered_set<TileKey> asked;  // the last request list, to count what is new in it
   bool isGpuFull = false;             // an upload failed, and nothing could be evicted for it
+  uint32_t fullPlan = 0;              // the plan whose look-ahead found no room
   uint64_t blockedBytes = 0;
+  double nowS = 0;
 
   // Kept from frame to frame so that they do not allocate.
-  std::vector<TileKey> wanted, requests;
+  std::vector<Wanted> wanted;
+  size_t missing = 0;  // the first of `wanted`: what the selection misses
+  std::vector<TileKey> requests;
+  std::unordered_set<TileKey> listed;
   std::vector<LoadResult> results;
-  std::vector<uint32_t> evictable;  // least recently used last; made when first needed in an exchange
-  bool isEvictableListed = false;
 
   PagingThread thread;  // last: it is joined before anything else goes
 };
 
-Pager::Impl::~Impl() {
-  for (uint32_t root : cache.roots()) {
-    std::vector<uint32_t> parents{root};
-    while (!parents.empty()) {
-      const uint32_t node = parents.back();
-      parents.pop_back();
-      gpu.release(cache.node(node).gpu);
-      const uint32_t first = cache.node(node).firstChild;
-      for (uint32_t i = 0; i < cache.children(node).size(); ++i) parents.push_back(first + i);
-    }
-  }
+bool Pager::Impl::isOpen(const TileKey& parent) const {
+  const std::optional<uint32_t> node = residency.cache().find(parent);
+  return node && residency.cache().children(*node).empty() && !lost.contains(parent);
 }
 
-void Pager::Impl::listWantedGroups(const Selection& selection) {
+void Pager::Impl::listWanted(const Selection& selection) {
   wanted.clear();
   for (const WantedChunk& chunk : selection.wanted) {
     const std::optional<TileKey> parent = chunk.key.parent();
-    if (!parent || (!wanted.empty() && wanted.back() == *parent) || lost.contains(*parent)) continue;
-    const std::optional<uint32_t> node = cache.find(*parent);
-    if (node && cache.children(*node).empty()) wanted.push_back(*parent);
+    if (parent && (wanted.empty() || wanted.back().parent != *parent) && isOpen(*parent))
+      wanted.push_back({*parent, nowS, true});
+  }
+  missing = wanted.size();
+}
+
+void Pager::Impl::listAhead() {
+  listed.clear();
+  for (const Wanted& group : wanted) listed.insert(group.parent);
+  for (const GroupAhead& group : schedule.wanted()) {
+    if (isOpen(group.parent) && !listed.contains(group.parent))
+      wanted.push_back({group.parent, schedule.plannedAtS() + group.neededInS, schedule.isInMemoryArea(group)});
   }
 }
 
@@ -95,8 +107,9 @@ void Pager::Impl::takeResults() {
   counts.bytesRead = taken.bytesRead;
   for (LoadResult& result : results) {
     if (result.group) {
+      pace.loaded(result.cost);
       // A parent that went while its children were on their way does not want them any more.
-      if (cache.find(result.parent)) ram.insert(std::move(*result.group));
+      if (residency.cache().find(result.parent)) ram.insert(std::move(*result.group));
       continue;
     }
     lost.insert(result.parent);
@@ -115,85 +128,38 @@ void Pager::Impl::sendRequests(size_t begin) {
   uint64_t waitingBytes = 0;
   // What is decoded and waits for its upload takes RAM: beyond half of the budget more would only push out the first.
   for (size_t i = begin; i < wanted.size() && !isGpuFull && waitingBytes <= options.ramBudgetBytes / 2; ++i) {
-    if (lost.contains(wanted[i])) continue;
-    const ChunkGroup* group = ram.use(wanted[i]);
+    const TileKey& parent = wanted[i].parent;
+    if (lost.contains(parent)) continue;
+    const ChunkGroup* group = ram.use(parent);
     if (group != nullptr) {
       waitingBytes += group->bytes();
     } else {
-      requests.push_back(wanted[i]);
+      requests.push_back(parent);
     }
   }
+  uint64_t newGroups = 0;
   for (const TileKey& parent : requests) {
-    if (!asked.contains(parent)) counts.requested += static_cast<uint64_t>(parent.children().count);
+    if (asked.contains(parent)) continue;
+    ++newGroups;
+    counts.requested += static_cast<uint64_t>(parent.children().count);
   }
+  pace.asked(newGroups, nowS);
   asked.clear();
   asked.insert(requests.begin(), requests.end());
   trimRam();
   thread.request(requests, options.ramBudgetBytes - ram.bytes());
 }
 
-std::optional<std::vector<ResidentChunk>> Pager::Impl::upload(const ChunkGroup& group) {
-  std::vector<ResidentChunk> uploaded;
-  for (const LoadedChunk& chunk : group.chunks) {
-    const std::optional<GpuChunk> place = gpu.upload(chunk);
-    if (!place) {
-      for (const ResidentChunk& done : uploaded) gpu.release(done.gpu);
-      return std::nullopt;
-    }
-    uploaded.push_back(residentFrom(chunk, *place));
-  }
-  return uploaded;
-}
-
-bool Pager::Impl::takeIn(const ChunkGroup& group) {
-  for (;;) {
-    if (const auto uploaded = upload(group)) {
-      cache.insertChildren(*cache.find(group.parent), *uploaded);
-      counts.loaded += uploaded->size();
-      return true;
-    }
-    if (evictOne()) continue;
-    ++counts.refused;
-    return false;
-  }
-}
-
-bool Pager::Impl::canEvict() {
-  if (!isEvictableListed || evictable.empty()) {  // again when empty: parents of what has gone may be leaves now
-    const uint64_t idleFrames = options.wait ? 0 : kIdleFrames;
-    cache.leafGroupsUnusedSince(cache.frame() - std::min(cache.frame(), idleFrames), evictable);
-    std::ranges::reverse(evictable);
-    isEvictableListed = true;
-  }
-  return !evictable.empty();
-}
-
-bool Pager::Impl::evictOne() {
-  if (!canEvict()) return false;
-  evict(evictable.back());
-  evictable.pop_back();
-  return true;
-}
-
-void Pager::Impl::evict(uint32_t parent) {
-  for (const CacheNode& child : cache.children(parent)) {
-    gpu.release(child.gpu);
-    ++counts.evicted;
-  }
-  ram.use(cache.node(parent).meta.key);  // if it is still there, it is now the only copy
-  cache.removeChildren(parent);
-}
-
-// At least one group, then while the budget lasts.
+// Of what is missed: at least one group, then while the budget lasts.
 int Pager::Impl::takeInWithinBudget() {
   const TraceScope trace("upload");
   const int64_t beginNs = monotonicNs();
   uint64_t bytes = 0;
   int taken = 0;
-  for (const TileKey& parent : wanted) {
-    const ChunkGroup* group = ram.use(parent);
+  for (size_t i = 0; i < missing; ++i) {
+    const ChunkGroup* group = ram.use(wanted[i].parent);
     if (group == nullptr) continue;
-    isGpuFull = !takeIn(*group);
+    isGpuFull = !residency.takeIn(*group, wanted[i].neededAtS);
     if (isGpuFull) break;
     taken += static_cast<int>(group->chunks.size());
     bytes += group->bytes();
@@ -203,19 +169,40 @@ int Pager::Impl::takeInWithinBudget() {
   return taken;
 }
 
+// Of what is ahead, in frames that miss nothing: the interval's groups spread over its frames.
+int Pager::Impl::takeInAhead() {
+  const TraceScope trace("upload ahead");
+  const int due = schedule.uploadsDue();
+  int taken = 0, groups = 0;
+  for (size_t i = missing; i < wanted.size() && groups < due && fullPlan != schedule.plan(); ++i) {
+    if (!wanted[i].inMemory) continue;
+    const ChunkGroup* group = ram.use(wanted[i].parent);
+    if (group == nullptr) continue;
+    if (!residency.takeIn(*group, wanted[i].neededAtS)) {
+      fullPlan = schedule.plan();
+      break;
+    }
+    taken += static_cast<int>(group->chunks.size());
+    ++groups;
+  }
+  schedule.uploaded(groups);
+  return taken;
+}
+
 // All of the list in its order, so that what becomes resident does not depend on time.
 int Pager::Impl::takeInAll() {
   const TraceScope trace("wait for terrain");
   int taken = 0;
   for (size_t i = 0; i < wanted.size(); ++i) {
-    while (!lost.contains(wanted[i]) && ram.use(wanted[i]) == nullptr) {
+    const TileKey& parent = wanted[i].parent;
+    while (!lost.contains(parent) && ram.use(parent) == nullptr) {
       sendRequests(i);
       thread.waitForResult();
       takeResults();
     }
-    if (lost.contains(wanted[i])) continue;
-    const ChunkGroup* group = ram.use(wanted[i]);
-    isGpuFull = !takeIn(*group);
+    if (lost.contains(parent)) continue;
+    const ChunkGroup* group = ram.use(parent);
+    isGpuFull = !residency.takeIn(*group, nowS);
     if (isGpuFull) break;
     taken += static_cast<int>(group->chunks.size());
   }
@@ -225,7 +212,7 @@ int Pager::Impl::takeInAll() {
 Pager::Pager(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Pager::~Pager() = default;
 TerrainCache& Pager::cache() {
-  return impl_->cache;
+  return impl_->residency.cache();
 }
 const DatabaseInfo& Pager::info() const {
   return impl_->info;
@@ -256,32 +243,62 @@ Result<std::unique_ptr<Pager>> Pager::create(const std::string& databasePath, Gp
     roots.push_back(residentFrom(*chunk, *place));
   }
   auto impl = std::make_unique<Impl>(std::move(*reader), gpu, options);
-  impl->cache.insertRoots(roots);
+  impl->residency.cache().insertRoots(roots);
   return std::unique_ptr<Pager>(new Pager(std::move(impl)));
 }
 
-int Pager::exchange(const Selection& selection) {
+int Pager::exchange(const Selection& selection, const LookAhead* ahead) {
   const TraceScope trace("exchange");
   Impl& pager = *impl_;
-  pager.isEvictableListed = false;
+  const TerrainCache& cache = pager.residency.cache();
+  const bool looksAhead = ahead != nullptr && !pager.options.wait;
+  if (looksAhead) pager.nowS = ahead->nowS;
+
   pager.takeResults();
-  pager.listWantedGroups(selection);
+  if (looksAhead) {
+    const uint64_t ramUsed = std::min(pager.options.ramBudgetBytes, pager.ram.bytes());
+    pager.schedule.update(pager.residency.cache(), *ahead, pager.pace.rates(), pager.options.ramBudgetBytes - ramUsed);
+  }
+  const uint64_t idleFrames = pager.options.wait ? 0 : kIdleFrames;
+  pager.residency.begin({cache.frame() - std::min(cache.frame(), idleFrames), pager.schedule.plan(),
+                         looksAhead ? pager.schedule.interval().lengthS * ahead->frameRateHz : kIdleFrames});
+  pager.listWanted(selection);
   // What did not fit waits, and nothing is read, until something else has fallen out of use.
-  if (pager.isGpuFull && !pager.wanted.empty()) pager.isGpuFull = !pager.canEvict();
+  if (pager.isGpuFull && pager.missing > 0) pager.isGpuFull = !pager.residency.canEvict(pager.nowS);
+  if (pager.missing == 0) pager.isGpuFull = false;
   int taken = 0;
   if (!pager.isGpuFull) taken = pager.options.wait ? pager.takeInAll() : pager.takeInWithinBudget();
-  std::erase_if(pager.wanted,
-                [&](const TileKey& parent) { return !pager.cache.children(*pager.cache.find(parent)).empty(); });
+  if (looksAhead) {
+    pager.listAhead();
+    if (taken == 0 && !pager.isGpuFull) taken = pager.takeInAhead();
+  }
+  std::erase_if(pager.wanted, [&](const Impl::Wanted& group) { return !pager.isOpen(group.parent); });
   pager.sendRequests(0);
+  if (!pager.options.wait) pager.coarsening.steer(pager.isGpuFull, pager.residency);
   return taken;
+}
+
+double Pager::coarsening() const {
+  return impl_->coarsening.factor();
 }
 
 PagingCounts Pager::counts() const {
   PagingCounts counts = impl_->counts;
-  counts.resident = impl_->cache.size();
+  const Residency::Counts& residency = impl_->residency.counts();
+  counts.loaded = residency.loaded;
+  counts.evicted = residency.evicted;
+  counts.refused = residency.refused;
+  counts.resident = impl_->residency.cache().size();
+  counts.cached = impl_->ram.chunksBeside(impl_->residency.cache());
   counts.ramBytes = impl_->ram.bytes() + impl_->thread.resultBytes();
-  counts.gpuBytes = impl_->gpu.bytesResident();
+  counts.gpuBytes = impl_->residency.gpu().bytesResident();
   return counts;
+}
+
+PagingPace Pager::pace() const {
+  const Schedule& schedule = impl_->schedule;
+  if (schedule.plan() == 0) return {};
+  return {schedule.interval(), schedule.memoryS(), schedule.cacheS(), impl_->pace.rates()};
 }
 
 }  // namespace eye

@@ -91,7 +91,9 @@ void PagingThread::run() {
     isLoading_ = true;
     lock.unlock();
 
-    LoadResult result{parent, loadGroup(reader_, parent)};
+    LoadCost cost;
+    Result<ChunkGroup> group = loadGroup(reader_, parent, &cost);
+    LoadResult result{parent, std::move(group), cost};
     uint64_t bytes = result.group ? result.group->bytes() : 0;
     if (bytes > ramBudgetBytes_) {
       result.group =

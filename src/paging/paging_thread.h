@@ -15,6 +15,7 @@ namespace eye {
 struct LoadResult {
   TileKey parent;
   Result<ChunkGroup> group;  // noSpace: bigger than the whole RAM budget
+  LoadCost cost;
 };
 
 class PagingThread {

@@ -27,4 +27,12 @@ void RamCache::trim(uint64_t budgetBytes) {
   }
 }
 
+uint64_t RamCache::chunksBeside(const TerrainCache& cache) const {
+  uint64_t chunks = 0;
+  for (const Entry& entry : entries_) {
+    if (!cache.find(entry.group.chunks.front().meta.key)) chunks += entry.group.chunks.size();
+  }
+  return chunks;
+}
+
 }  // namespace eye

@@ -15,6 +15,7 @@ class RamCache {
   const ChunkGroup* use(const TileKey& parent);  // marks it most recently used; null where it is not here
   void trim(uint64_t budgetBytes);               // drops until bytes() <= budgetBytes
   uint64_t bytes() const { return bytes_; }
+  uint64_t chunksBeside(const TerrainCache& cache) const;  // chunks in groups that are not resident
 
  private:
   struct Entry {

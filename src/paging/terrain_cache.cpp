@@ -1,6 +1,7 @@
 #include "paging/terrain_cache.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace eye {
 namespace {
@@ -88,17 +89,25 @@ void TerrainCache::removeChildren(uint32_t parent) {
   freeGroups_.push_back(first / kSlots);
 }
 
-void TerrainCache::leafGroupsUnusedSince(uint64_t usedBefore, std::vector<uint32_t>& parents) const {
-  parents.clear();
+void TerrainCache::evictableGroups(const EvictionRule& rule, std::vector<EvictableGroup>& groups) const {
+  groups.clear();
   for (uint32_t group = 0; group < groupParents_.size(); ++group) {
     const uint32_t parent = groupParents_[group];
     // A walk that reaches one child reaches all of them: the first one's frame is the group's.
-    if (parent == kNoNode || nodes_[group * kSlots].usedFrame >= usedBefore) continue;
+    if (parent == kNoNode) continue;
+    const CacheNode& first = nodes_[group * kSlots];
+    if (first.usedFrame >= rule.usedBefore) continue;
     const auto isChildless = [](const CacheNode& child) { return child.firstChild == kNoNode; };
-    if (std::ranges::all_of(children(parent), isChildless)) parents.push_back(parent);
+    if (!std::ranges::all_of(children(parent), isChildless)) continue;
+    const bool scheduled = rule.plan != 0 && first.plan == rule.plan;
+    const auto frame = static_cast<double>(std::max(first.usedFrame, first.scheduledFrame));
+    groups.push_back({parent, frame + rule.framesPerInterval * (kMaxLevel - first.meta.key.level()),
+                      scheduled ? first.neededAtS : std::numeric_limits<double>::infinity()});
   }
-  std::ranges::sort(parents, {}, [this](uint32_t parent) {
-    return std::pair(nodes_[nodes_[parent].firstChild].usedFrame, nodes_[parent].meta.key.code());
+  std::ranges::sort(groups, [this](const EvictableGroup& a, const EvictableGroup& b) {
+    if (a.neededAtS != b.neededAtS) return a.neededAtS > b.neededAtS;
+    if (a.p != b.p) return a.p < b.p;
+    return nodes_[a.parent].meta.key.code() < nodes_[b.parent].meta.key.code();
   });
 }
 

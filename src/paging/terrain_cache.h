@@ -63,6 +63,23 @@ struct CacheNode {
   std::array<uint8_t, 4> neighbourCount{};
   Visit visit = Visit::none;  // of usedFrame
   uint64_t usedFrame = 0;     // last frame that visited it, at first that of its insertion
+  // Of the scheduling region, the same for all members of a group: the last plan that had it, its frame, and when the
+  // group is needed on the pager's clock.
+  uint32_t plan = 0;
+  uint64_t scheduledFrame = 0;
+  double neededAtS = 0;
+};
+
+// What may be evicted, and in which order.
+struct EvictionRule {
+  uint64_t usedBefore = 0;        // no walk has reached it since
+  uint32_t plan = 0;              // the plan in force
+  double framesPerInterval = 60;  // k t of equation (12)
+};
+struct EvictableGroup {
+  uint32_t parent = 0;
+  double p = 0;          // equation (12)
+  double neededAtS = 0;  // infinite where no plan has it
 };
 
 // A chunk that is on the GPU and about to join the forest.
@@ -82,6 +99,7 @@ class TerrainCache {
   uint64_t frame() const { return frame_; }  // counts calls of beginFrame
   void beginFrame() { ++frame_; }            // before each selectChunks; a walk that starts again has one of its own
   size_t size() const { return indexOf_.size(); }
+  size_t groupCount() const { return groupParents_.size() - freeGroups_.size() - roots_.size() / kSlots; }
 
   // Insertion and eviction are the pager's. Indices of other nodes stay valid, references do not.
   // The eight roots in the order of their octants, once, all with imagery.
@@ -89,9 +107,10 @@ class TerrainCache {
   // All children of a node that has none resident, in the order of TileKey::children.
   void insertChildren(uint32_t parent, std::span<const ResidentChunk> children);
   void removeChildren(uint32_t parent);  // which have no children themselves
-  // Parents of groups whose members are all childless and that no frame from `usedBefore` on has visited: least
-  // recently used first, then by code.
-  void leafGroupsUnusedSince(uint64_t usedBefore, std::vector<uint32_t>& parents) const;
+  // Groups whose members are all childless and that no walk from `rule.usedBefore` on has reached. First those outside
+  // the region, by p = f + k t l (paper 000, equation 12; f: the last frame that used or scheduled it, l: 0 for the
+  // finest level), so that of one age the finer goes first; then those inside, the last to be needed first.
+  void evictableGroups(const EvictionRule& rule, std::vector<EvictableGroup>& groups) const;
   // Resident children of a node: empty or three or four, behind one another.
   std::span<const CacheNode> children(uint32_t parent) const;
 

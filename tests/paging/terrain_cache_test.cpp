@@ -83,14 +83,15 @@ TEST_CASE("neighbours stay linked while chunks come and go, and their slots are 
   checkLinks(cache);
   const size_t size = cache.size();
   cache.beginFrame();
-  std::vector<uint32_t> parents;
-  cache.leafGroupsUnusedSince(0, parents);
-  CHECK(parents.empty());
+  std::vector<EvictableGroup> groups;
+  cache.evictableGroups({.usedBefore = 0}, groups);
+  CHECK(groups.empty());
   std::vector<TileKey> removed;
   for (int round = 0; round < 3; ++round) {
-    cache.leafGroupsUnusedSince(cache.frame(), parents);
-    REQUIRE(!parents.empty());
-    for (uint32_t parent : parents) {
+    cache.evictableGroups({.usedBefore = cache.frame()}, groups);
+    REQUIRE(!groups.empty());
+    for (const EvictableGroup& group : groups) {
+      const uint32_t parent = group.parent;
       removed.push_back(cache.node(parent).meta.key);
       cache.removeChildren(parent);
     }

@@ -1,0 +1,107 @@
+#include "app/viewpoint_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "link/angles.h"
+
+namespace eye {
+namespace {
+
+// Without a prediction the speed still sets the pager's interval. Faster is a jump.
+constexpr double kFastestMS = 10000;
+constexpr double kRadPerDeg = std::numbers::pi / 180;
+// While the predictor does not know the velocity yet, its radius is that of everything that flies.
+constexpr double kGreatestRadiusM = 2000;
+constexpr double kSmoothing = 0.05;  // a frame's share in the mean frame rate and speed
+
+double halfFovRad(const Frustum& frustum) {
+  const double x = std::max(std::abs(frustum.tanLeft), std::abs(frustum.tanRight));
+  const double y = std::max(std::abs(frustum.tanBottom), std::abs(frustum.tanTop));
+  return std::atan(std::hypot(x, y));
+}
+
+PredictorOptions predictorOptions(const Options& options) {
+  PredictorOptions predictor;
+  predictor.states = options.predictorStates;
+  predictor.processNoise = options.processNoise;
+  if (options.measurementSigmaM) predictor.measurementSigmaM = *options.measurementSigmaM;
+  predictor.adapt = !options.processNoise && !options.measurementSigmaM;
+  return predictor;
+}
+
+}  // namespace
+
+ViewpointTracker::ViewpointTracker(const Options& options) : options_(options), predictor_(predictorOptions(options)) {}
+
+void ViewpointTracker::observe(const SourceSample& host, const Pose& pose, double nowS) {
+  const Vec3d eyeEcefM = ecefFromGeodetic(pose.position);
+  const double sinceS = nowS - nowS_;
+  jumped_ = !started_;
+  if (started_ && sinceS > 0) {
+    const double speedMS = glm::length(eyeEcefM - eyeEcefM_) / sinceS;
+    jumped_ = speedMS > kFastestMS;
+    if (!jumped_) speedMS_ += kSmoothing * (speedMS - speedMS_);
+    frameRateHz_ += kSmoothing * (std::min(1 / sinceS, 1000.0) - frameRateHz_);
+  }
+  started_ = true;
+  pose_ = pose;
+  eyeEcefM_ = eyeEcefM;
+  nowS_ = nowS;
+  while (!foreseen_.empty() && foreseen_.front().atS <= nowS) {
+    errorM_ = glm::length(foreseen_.front().ecefM - eyeEcefM);
+    foreseen_.pop_front();
+  }
+
+  if (options_.predictor == PredictorMode::none) return;
+  if (host.live && host.arrivedNs == observedNs_) return;  // nothing new
+  observedNs_ = host.arrivedNs;
+  predictor_.observe(host.live ? static_cast<double>(host.arrivedNs) * 1e-9 : nowS, pose);
+  const PredictorCounts& counts = predictor_.state().counts;
+  jumped_ = jumped_ || counts.teleports + counts.resets != restarts_;
+  restarts_ = counts.teleports + counts.resets;
+  if (jumped_) {
+    foreseen_.clear();
+    errorM_.reset();
+  }
+}
+
+ViewpointAhead ViewpointTracker::ahead(const Vec3d& nowForwardEcef, double inS) const {
+  const Prediction prediction = options_.predictor == PredictorMode::none ? Prediction{} : predictor_.at(nowS_ + inS);
+  if (!prediction.valid) return {inS, eyeEcefM_, pose_.position.altM, 0, nowForwardEcef, 0};
+  const double turnRateRadS = prediction.turnRateDegS * kRadPerDeg;
+  return {inS,
+          prediction.ecefM,
+          prediction.pose.position.altM,
+          std::min(prediction.radius98M, kGreatestRadiusM),
+          ecefFromBody(prediction.pose)[0],
+          turnRateRadS};
+}
+
+LookAhead ViewpointTracker::lookAhead(const View& view) const {
+  LookAhead look;
+  look.nowS = nowS_;
+  look.frameRateHz = frameRateHz_;
+  look.speedMS = speedMS_;
+  look.jumped = jumped_;
+  look.region.pixelsPerRadian = pixelsPerRadian(view);
+  look.region.ssePx = options_.ssePx;
+  look.region.halfFovRad = halfFovRad(view.frustum);
+  look.region.widening = options_.regionWidening;
+  const Vec3d forwardEcef = ecefFromBody(pose_)[0];
+  look.at = [this, forwardEcef](double inS) { return ahead(forwardEcef, inS); };
+  return look;
+}
+
+PredictionRecord ViewpointTracker::record(double horizonS) {
+  if (options_.predictor == PredictorMode::none || horizonS <= 0) return {};
+  const Prediction prediction = predictor_.at(nowS_ + horizonS);
+  if (!prediction.valid) return {};
+  // In the order of their times: a shorter horizon than before comes behind what is still awaited.
+  if (foreseen_.empty() || foreseen_.back().atS < nowS_ + horizonS)
+    foreseen_.push_back({nowS_ + horizonS, prediction.ecefM});
+  return {horizonS, prediction.radius98M, errorM_};
+}
+
+}  // namespace eye

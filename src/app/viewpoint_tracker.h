@@ -1,0 +1,54 @@
+// The viewpoint over time: what the pager looks ahead along, and how good the prediction has been. Owner thread:
+// render.
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "app/options.h"
+#include "geo/view.h"
+#include "link/state_source.h"
+#include "paging/schedule.h"
+#include "predict/viewpoint_predictor.h"
+
+namespace eye {
+
+// Of the viewpoint after the time that the pager looks ahead.
+struct PredictionRecord {
+  double horizonS = 0;
+  double radiusM = 0;            // 98 %
+  std::optional<double> errorM;  // of the newest prediction whose time has come
+};
+
+class ViewpointTracker {
+ public:
+  // The options must live longer.
+  explicit ViewpointTracker(const Options& options);
+
+  // Once a frame. `nowS`: a clock that never goes back; for a live host the one that arrival times are on.
+  void observe(const SourceSample& host, const Pose& pose, double nowS);
+  // From the view of this frame on. Valid until the next observe().
+  LookAhead lookAhead(const View& view) const;
+  // What the statistics say of predictions `horizonS` ahead.
+  PredictionRecord record(double horizonS);
+
+ private:
+  ViewpointAhead ahead(const Vec3d& nowForwardEcef, double inS) const;
+
+  const Options& options_;
+  ViewpointPredictor predictor_;
+  Pose pose_;
+  Vec3d eyeEcefM_{};
+  double nowS_ = 0, speedMS_ = 0, frameRateHz_ = 60;
+  bool started_ = false, jumped_ = false;
+  int64_t observedNs_ = 0;  // arrival of the newest packet observed
+  uint64_t restarts_ = 0;   // of the predictor
+  struct Foreseen {
+    double atS;
+    Vec3d ecefM;
+  };
+  std::deque<Foreseen> foreseen_;
+  std::optional<double> errorM_;
+};
+
+}  // namespace eye

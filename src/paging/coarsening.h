@@ -1,0 +1,20 @@
+// Less detail where the GPU's budget is too small for what is seen, more when it suffices again. Owner thread: render.
+#pragma once
+
+#include "paging/residency.h"
+
+namespace eye {
+
+// A selection that wants more than fits would refine what came first and leave the rest at whatever happens to be
+// there. A coarser tolerance takes detail from everywhere alike, the farthest and smallest first.
+class Coarsening {
+ public:
+  double factor() const { return factor_; }
+  // After each exchange. `isStarved`: something seen found no room.
+  void steer(bool isStarved, Residency& residency);
+
+ private:
+  double factor_ = 1;
+};
+
+}  // namespace eye
