@@ -39,7 +39,7 @@ for name in "${names[@]}"; do
     "$(find "$corpus" -type f | wc -l)"
   if [ "$status" -ne 0 ]; then
     crashes=$((crashes + 1))
-    grep -m 3 -E 'ERROR|SUMMARY|runtime error|Test unit written' "$log" >&2 || tail -n 5 "$log" >&2
+    grep -m 4 -E 'invariant broken|ERROR|SUMMARY|runtime error|Test unit written' "$log" >&2 || tail -n 5 "$log" >&2
     echo "fuzz.sh: $name failed with status $status; the whole report: $log" >&2
   fi
 done
