@@ -150,7 +150,8 @@ Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
 // Walks the forest and exchanges with the paging thread; offline again and again until nothing more comes.
 void ImageGenerator::select(const LookAhead* ahead) {
   const bool culls = options_.culling != CullingMode::none;
-  const LodOptions lod{.ssePx = options_.ssePx * pager_->coarsening(),
+  const LodOptions lod{.ssePx = options_.ssePx,
+                       .coarsening = pager_->coarsening(),
                        .culling = culls ? CullingScheme::frustum : CullingScheme::none,
                        .horizon = options_.horizon};
   int arrived = 0;

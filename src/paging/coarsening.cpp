@@ -6,20 +6,34 @@ namespace eye {
 namespace {
 
 // A frame's change: three times coarser in a second of starving, and back from that in about as long.
-constexpr double kCoarser = 1.02, kFiner = 0.982;
+constexpr double kCoarser = 1.02, kFiner = 0.98;
 constexpr double kCoarsest = 64;
 // Of the resident groups, the share that must be free to go before more is asked for: a step finer wants a few per
 // cent.
 constexpr double kSpareShare = 0.15;
+// With so many free the view has changed, and what was too fine before says nothing any more.
+constexpr double kPlentyShare = 0.4, kMuchFiner = 0.9;
+// What was too fine is not tried again at once, lest a level be loaded and evicted in turns; in flight after some time.
+constexpr double kAboveStarved = 1.05, kForgetting = 0.999;
 
 }  // namespace
 
-void Coarsening::steer(bool isStarved, Residency& residency) {
+void Coarsening::steer(bool isStarved, bool isMoving, Residency& residency) {
   if (isStarved) {
+    starvedAt_ = factor_;
     factor_ = std::min(factor_ * kCoarser, kCoarsest);
-  } else if (factor_ > 1 && residency.evictableShare() > kSpareShare) {
-    factor_ = std::max(factor_ * kFiner, 1.0);
+    return;
   }
+  if (factor_ <= 1) return;
+  const double spare = residency.evictableShare();
+  if (spare > kPlentyShare) {
+    starvedAt_ = 1;
+  } else if (isMoving) {
+    starvedAt_ *= kForgetting;
+  }
+  const double finest = starvedAt_ > 1 ? starvedAt_ * kAboveStarved : 1;
+  const double next = factor_ * (spare > kPlentyShare ? kMuchFiner : kFiner);
+  if (spare > kSpareShare && (next >= finest || finest <= 1)) factor_ = std::max(next, 1.0);
 }
 
 }  // namespace eye

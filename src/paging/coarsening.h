@@ -10,11 +10,13 @@ namespace eye {
 class Coarsening {
  public:
   double factor() const { return factor_; }
-  // After each exchange. `isStarved`: something seen found no room.
-  void steer(bool isStarved, Residency& residency);
+  // After each exchange. `isStarved`: something seen found no room. `isMoving`: the view is another one all the time,
+  // so that what did not fit may fit now.
+  void steer(bool isStarved, bool isMoving, Residency& residency);
 
  private:
   double factor_ = 1;
+  double starvedAt_ = 1;  // the last factor that was too fine
 };
 
 }  // namespace eye

@@ -27,7 +27,8 @@ class Walk {
         planes_(frustumPlanes(view)),
         pixelsPerRadian_(pixelsPerRadian(view)),
         ssePx_(options.ssePx),
-        texelPx_(options.texelPx) {}
+        texelPx_(options.texelPx),
+        coarsening_(options.coarsening) {}
 
   void fromRoots() {
     for (uint32_t root : cache_.roots()) visit(root, kAllPlanes, 0);
@@ -87,7 +88,7 @@ class Walk {
     const double pixelsPerM = pixelsPerRadian_ / std::max(distanceM, kNearestM);
     const double excess =
         std::max(meta.geometricErrorM * pixelsPerM / ssePx_, meta.texelErrorM * pixelsPerM / texelPx_);
-    if (excess > 1 && node.firstChild != CacheNode::kNoNode) {
+    if (excess > coarsening_ && node.firstChild != CacheNode::kNoNode) {
       node.visit = Visit::refined;
       const uint32_t first = node.firstChild;
       const auto count = static_cast<uint32_t>(cache_.children(index).size());
@@ -163,7 +164,7 @@ class Walk {
   const HorizonTest horizonTest_;
   const Vec3d eyeM_;
   const FrustumPlanes planes_;
-  const double pixelsPerRadian_, ssePx_, texelPx_;
+  const double pixelsPerRadian_, ssePx_, texelPx_, coarsening_;
   double greatestDepthM_ = 0;
   std::vector<uint32_t> across_;
 };
@@ -185,7 +186,7 @@ void sortFrontToBack(Selection& out) {
   for (uint64_t entry : out.order) out.draws.push_back(out.walked[entry & 0xFFFFF]);
 }
 
-void listWanted(const TerrainCache& cache, Selection& out) {
+void listWanted(const TerrainCache& cache, double coarsening, Selection& out) {
   out.wanted.clear();
   std::erase_if(out.coarse, [](const Selection::Coarse& c) { return !c.childrenMissing; });
   out.counts.missing = static_cast<uint32_t>(out.coarse.size());
@@ -195,6 +196,7 @@ void listWanted(const TerrainCache& cache, Selection& out) {
     return cache.node(a.node).meta.key.code() < cache.node(b.node).meta.key.code();
   });
   for (const Selection::Coarse& coarse : out.coarse) {
+    if (coarse.priority <= static_cast<float>(coarsening)) break;
     for (const TileKey& child : cache.node(coarse.node).meta.key.children())
       out.wanted.push_back({child, coarse.priority});
   }
@@ -235,7 +237,7 @@ void selectChunks(TerrainCache& cache, const View& view, const LodOptions& optio
   out.counts.drawn = static_cast<uint32_t>(out.walked.size());
   sortFrontToBack(out);
   assignSkirts(cache, out.draws);
-  listWanted(cache, out);
+  listWanted(cache, options.coarsening, out);
 }
 
 }  // namespace eye

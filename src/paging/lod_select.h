@@ -17,6 +17,7 @@ enum class CullingScheme { none, frustum };
 struct LodOptions {
   double ssePx = 1;                                // tolerated screen-space error of geometry
   double texelPx = 4;                              // greatest size of an imagery texel on screen while finer exists
+  double coarsening = 1;                           // both tolerances are taken times this, 1 or more
   CullingScheme culling = CullingScheme::frustum;  // frustum: view planes and horizon
   HorizonTest horizon = HorizonTest::ellipsoid;
 };
@@ -38,7 +39,8 @@ struct WantedChunk {
 
 struct SelectionCounts {
   uint32_t considered = 0, frustumCulled = 0, horizonCulled = 0, drawn = 0;
-  uint32_t missing = 0;  // drawn coarser than the tolerance allows because a child was not resident
+  // Drawn coarser than the tolerance allows because a child was not resident. Coarsening counts: it is no excuse.
+  uint32_t missing = 0;
 };
 
 struct Selection {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <unordered_set>
 
 #include "paging/coarsening.h"
@@ -21,6 +21,8 @@ namespace {
 constexpr uint64_t kIdleFrames = 8;
 // Of the RAM budget, kept free for results that are on their way; a group that needs more gets it when it is known.
 constexpr uint64_t kRoomShare = 4;
+// When a group is needed that is seen and missed: before anything that is not seen, however soon that may be.
+constexpr double kSeen = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -86,7 +88,7 @@ void Pager::Impl::listWanted(const Selection& selection) {
   for (const WantedChunk& chunk : selection.wanted) {
     const std::optional<TileKey> parent = chunk.key.parent();
     if (parent && (wanted.empty() || wanted.back().parent != *parent) && isOpen(*parent))
-      wanted.push_back({*parent, nowS, true});
+      wanted.push_back({*parent, kSeen, true});
   }
   missing = wanted.size();
 }
@@ -202,7 +204,7 @@ int Pager::Impl::takeInAll() {
     }
     if (lost.contains(parent)) continue;
     const ChunkGroup* group = ram.use(parent);
-    isGpuFull = !residency.takeIn(*group, nowS);
+    isGpuFull = !residency.takeIn(*group, kSeen);
     if (isGpuFull) break;
     taken += static_cast<int>(group->chunks.size());
   }
@@ -257,14 +259,17 @@ int Pager::exchange(const Selection& selection, const LookAhead* ahead) {
   pager.takeResults();
   if (looksAhead) {
     const uint64_t ramUsed = std::min(pager.options.ramBudgetBytes, pager.ram.bytes());
-    pager.schedule.update(pager.residency.cache(), *ahead, pager.pace.rates(), pager.options.ramBudgetBytes - ramUsed);
+    LookAhead coarser = *ahead;
+    coarser.region.ssePx *= pager.coarsening.factor();
+    coarser.region.texelPx *= pager.coarsening.factor();
+    pager.schedule.update(pager.residency.cache(), coarser, pager.pace.rates(), pager.options.ramBudgetBytes - ramUsed);
   }
   const uint64_t idleFrames = pager.options.wait ? 0 : kIdleFrames;
   pager.residency.begin({cache.frame() - std::min(cache.frame(), idleFrames), pager.schedule.plan(),
                          looksAhead ? pager.schedule.interval().lengthS * ahead->frameRateHz : kIdleFrames});
   pager.listWanted(selection);
   // What did not fit waits, and nothing is read, until something else has fallen out of use.
-  if (pager.isGpuFull && pager.missing > 0) pager.isGpuFull = !pager.residency.canEvict(pager.nowS);
+  if (pager.isGpuFull && pager.missing > 0) pager.isGpuFull = !pager.residency.canEvict(kSeen);
   if (pager.missing == 0) pager.isGpuFull = false;
   int taken = 0;
   if (!pager.isGpuFull) taken = pager.options.wait ? pager.takeInAll() : pager.takeInWithinBudget();
@@ -274,7 +279,9 @@ int Pager::exchange(const Selection& selection, const LookAhead* ahead) {
   }
   std::erase_if(pager.wanted, [&](const Impl::Wanted& group) { return !pager.isOpen(group.parent); });
   pager.sendRequests(0);
-  if (!pager.options.wait) pager.coarsening.steer(pager.isGpuFull, pager.residency);
+  constexpr double kMovingMS = 1;
+  const bool isMoving = ahead != nullptr && ahead->speedMS > kMovingMS;
+  if (!pager.options.wait) pager.coarsening.steer(pager.isGpuFull, isMoving, pager.residency);
   return taken;
 }
 

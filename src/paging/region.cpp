@@ -85,8 +85,10 @@ class RegionWalk {
       const double distanceM = std::max(distanceToBox(at.ecefM, meta.box) - at.radius98M, kNearestM);
       if (distanceM > kHysteresis * std::min(showsAtM, radiiM_[i])) continue;  // not even in front
       const double aroundRad = angleFromView(at, meta, distanceM);
-      // The square root: thresholds of area are taken on lengths.
-      const double sector = aroundRad < kFrontRad ? 1 : aroundRad < kSidesRad ? std::numbers::sqrt2 : 2;
+      // The square root: thresholds of area are taken on lengths. What is in the view is in front of it.
+      const double sector = aroundRad < std::max(kFrontRad, options_.halfFovRad) ? 1
+                            : aroundRad < kSidesRad                              ? std::numbers::sqrt2
+                                                                                 : 2;
       const double reachM = std::min(showsAtM / sector, radiiM_[i]);
       if (distanceM > kHysteresis * reachM) continue;
       need.viewpoints |= 1u << i;

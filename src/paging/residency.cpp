@@ -1,5 +1,7 @@
 #include "paging/residency.h"
 
+#include <limits>
+
 namespace eye {
 namespace {
 
@@ -44,7 +46,7 @@ bool Residency::canEvict(double neededAtS) {
 }
 
 double Residency::evictableShare() {
-  canEvict(0);
+  canEvict(-std::numeric_limits<double>::infinity());
   const size_t groups = cache_.groupCount();
   return groups == 0 ? 1 : static_cast<double>(evictable_.size() - next_) / static_cast<double>(groups);
 }

@@ -11,42 +11,11 @@
 #include <sstream>
 #include <thread>
 
+#include "paging/fake_store.h"
 #include "paging/synthetic_forest.h"
 
 namespace eye {
 namespace {
-
-// Stands in for the renderer: counts bytes against a budget that it never exceeds.
-class FakeStore final : public GpuStore {
- public:
-  explicit FakeStore(uint64_t budgetBytes) : budgetBytes_(budgetBytes) {}
-  std::optional<GpuChunk> upload(const LoadedChunk& chunk) override {
-    REQUIRE(chunk.mesh.indices.size() > chunk.surfaceIndexCount);  // skirts are behind
-    REQUIRE(chunk.texels.empty() == !chunk.meta.hasImagery);
-    if (bytes_ + chunk.bytes() > budgetBytes_) return std::nullopt;
-    GpuChunk handle;
-    handle.vertexOffset = next_++;
-    live_[handle.vertexOffset] = chunk.bytes();
-    bytes_ += chunk.bytes();
-    ++uploads;
-    return handle;
-  }
-  void release(const GpuChunk& chunk) override {
-    const auto found = live_.find(chunk.vertexOffset);
-    REQUIRE(found != live_.end());
-    bytes_ -= found->second;
-    live_.erase(found);
-  }
-  uint64_t bytesResident() const override { return bytes_; }
-  size_t live() const { return live_.size(); }
-  uint64_t uploads = 0;
-
- private:
-  const uint64_t budgetBytes_;
-  uint64_t bytes_ = 0;
-  uint32_t next_ = 0;
-  std::map<uint32_t, uint64_t> live_;
-};
 
 constexpr uint64_t kPlenty = uint64_t{1} << 30;
 constexpr double kLatDeg = 50, kLonDeg = 20;
@@ -69,7 +38,7 @@ std::unique_ptr<Pager> open(FakeStore& gpu, const PagerOptions& options) {
 
 void select(Pager& pager, const View& view, Selection& selection, CullingScheme culling = CullingScheme::frustum) {
   pager.cache().beginFrame();
-  selectChunks(pager.cache(), view, {.ssePx = 2, .culling = culling}, selection);
+  selectChunks(pager.cache(), view, {.ssePx = 2, .coarsening = pager.coarsening(), .culling = culling}, selection);
 }
 
 std::set<TileKey> drawnKeys(Pager& pager, const Selection& selection) {
@@ -248,6 +217,7 @@ TEST_CASE("a still eye comes to rest: nothing more is read, uploaded or evicted"
       CHECK(pager->counts().requested == before.requested);
       CHECK(gpu.uploads == uploads);
       CHECK((selection.counts.missing == 0) == (gpuBudget == kPlenty));
+      CHECK((pager->coarsening() == 1) == (gpuBudget == kPlenty));
     }
     CHECK(pager->counts().gpuBytes > 100'000);
   }
