@@ -105,7 +105,7 @@ TEST_CASE("what is ahead is there when the eye is: hardly a frame misses a chunk
     fly(
         *pager, [](double) { return alongMeridian(0); }, 0, 2, 0, 2, {}, looks);  // a start from rest, settled
     missing[looks] = fly(
-                         *pager, [](double t) { return alongMeridian(t - 2); }, 2, 14, kFastMS, 1, {}, looks)
+                         *pager, [](double t) { return alongMeridian(t - 2); }, 2, 12, kFastMS, 2.5, {}, looks)
                          .missingFrames;
   }
   INFO(missing[0] << " and " << missing[1] << " frames");
@@ -124,9 +124,15 @@ TEST_CASE("round and round at a budget just large enough, nothing is loaded twic
   SECTION("just large enough") {
     FakeStore gpu(needed);
     const auto pager = open(gpu, {.ramBudgetBytes = 2'000'000});
-    fly(*pager, aroundMiddle, 0, 2 * kRoundS, kRoundMS, 0.2);
-    const PagingCounts settled = pager->counts();
-    const Flown flown = fly(*pager, aroundMiddle, 2 * kRoundS, 4 * kRoundS, kRoundMS, 0.2);
+    double fromS = 0;
+    PagingCounts settled;
+    do {  // as many rounds as a busy machine's paging thread needs
+      settled = pager->counts();
+      fly(*pager, aroundMiddle, fromS, fromS + kRoundS, kRoundMS, 0.2);
+      fromS += kRoundS;
+    } while (pager->counts().loaded != settled.loaded && fromS < 20 * kRoundS);
+    settled = pager->counts();
+    const Flown flown = fly(*pager, aroundMiddle, fromS, fromS + 2 * kRoundS, kRoundMS, 0.2);
     CHECK(flown.missingFrames == 0);
     CHECK(pager->counts().loaded == settled.loaded);
     CHECK(pager->counts().evicted == settled.evicted);
@@ -220,6 +226,26 @@ TEST_CASE("a teleport a second across the globe: each time it recovers, and noth
     REQUIRE(pager->counts().gpuBytes <= 600'000);
     REQUIRE(pager->counts().ramBytes <= 1'000'000);
     REQUIRE(pager->counts().resident == gpu.live());
+  }
+}
+
+TEST_CASE("a still eye comes to rest whatever the budget") {
+  const Path still = [](double) { return aroundMiddle(3); };
+  for (uint64_t gpuBytes = 60'000; gpuBytes <= 640'000; gpuBytes = gpuBytes * 5 / 4) {
+    FakeStore gpu(gpuBytes);
+    const auto pager = open(gpu, {.ramBudgetBytes = 2'000'000});
+    double fromS = 0;
+    PagingCounts before;
+    do {
+      before = pager->counts();
+      fly(*pager, still, fromS, fromS + 2, 0, 0.5);
+      fromS += 2;
+    } while ((pager->counts().loaded != before.loaded || pager->counts().requested != before.requested) && fromS < 60);
+    INFO("budget " << gpuBytes << ", coarser by " << pager->coarsening());
+    fly(*pager, still, fromS, fromS + 10, 0, 0);
+    CHECK(pager->counts().loaded == before.loaded);
+    CHECK(pager->counts().evicted == before.evicted);
+    CHECK(pager->counts().requested == before.requested);
   }
 }
 

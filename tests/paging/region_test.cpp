@@ -93,7 +93,7 @@ TEST_CASE("the walk plans what the definition says, no more and no less") {
                                   0},
                                  symmetricFrustum(60, 800, 600, 1), 800, 600);
       path.push_back(aheadFrom(view, i));
-      path.back().radius98M = 20.0 * i;
+      path.back().radius98M = 600.0 * i;
       path.back().turnRateRadS = 0.05;
       options = optionsOf(view);
     }

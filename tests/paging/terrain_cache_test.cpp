@@ -109,4 +109,49 @@ TEST_CASE("neighbours stay linked while chunks come and go, and their slots are 
   CHECK(highest < size * 4 / 3 + 8);
 }
 
+TEST_CASE("equation (12): of one age the finer goes first, of one level the older; the region goes last") {
+  TerrainCache cache = makeForest(everywhereTo(4), [](const TileKey& key) { return key.level() <= key.octant() % 4; });
+  std::vector<EvictableGroup> groups;
+  for (int i = 0; i < 100; ++i) cache.beginFrame();
+  const auto levelOf = [&](const EvictableGroup& group) { return cache.node(group.parent).meta.key.level(); };
+  cache.evictableGroups({.usedBefore = 100, .framesPerInterval = 30}, groups);
+  REQUIRE(groups.size() > 5);
+  REQUIRE(levelOf(groups.front()) > levelOf(groups.back()));
+  for (size_t i = 1; i < groups.size(); ++i) CHECK(levelOf(groups[i]) <= levelOf(groups[i - 1]));
+
+  // Used 31 frames later a fine group outlives one that is a level coarser, 29 frames later it does not.
+  const uint32_t fine = groups.front().parent;
+  const auto coarse =
+      std::ranges::find_if(groups, [&](const auto& g) { return levelOf(g) + 1 == levelOf(groups.front()); });
+  REQUIRE(coarse != groups.end());
+  const uint32_t coarser = coarse->parent;
+  const auto comesBefore = [&](uint32_t a, uint32_t b) {
+    cache.evictableGroups({.usedBefore = 100, .plan = 5, .framesPerInterval = 30}, groups);
+    const auto at = [&](uint32_t parent) { return std::ranges::find(groups, parent, &EvictableGroup::parent); };
+    return at(a) < at(b);
+  };
+  const auto useChildren = [&](uint32_t parent, uint64_t frame) {
+    for (uint32_t i = 0; i < 4; ++i) cache.node(cache.node(parent).firstChild + i).usedFrame = frame;
+  };
+  const uint64_t frame = cache.node(cache.node(coarser).firstChild).usedFrame;
+  useChildren(fine, frame + 29);
+  CHECK(comesBefore(fine, coarser));
+  useChildren(fine, frame + 31);
+  CHECK_FALSE(comesBefore(fine, coarser));
+
+  // In the region: after all others, the last needed first.
+  const auto schedule = [&](uint32_t parent, double neededAtS) {
+    for (uint32_t i = 0; i < 4; ++i) {
+      cache.node(cache.node(parent).firstChild + i).plan = 5;
+      cache.node(cache.node(parent).firstChild + i).neededAtS = neededAtS;
+    }
+  };
+  schedule(fine, 3);
+  schedule(coarser, 2);
+  CHECK(comesBefore(fine, coarser));
+  CHECK(groups[groups.size() - 2].parent == fine);
+  CHECK(groups.back().parent == coarser);
+  CHECK(groups.back().neededAtS == 2);
+}
+
 }  // namespace eye
