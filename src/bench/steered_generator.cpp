@@ -21,9 +21,9 @@ class SteeredSource final : public StateSource {
 
 }  // namespace
 
-Result<SteeredGenerator> SteeredGenerator::create(Options options) {
+Result<SteeredGenerator> SteeredGenerator::create(Options options, bool offline) {
   options.headless = true;
-  options.offline = true;
+  options.offline = offline;
   options.redrawAlways = true;
   SteeredGenerator made;
   made.pose_ = std::make_shared<Pose>();
@@ -33,9 +33,9 @@ Result<SteeredGenerator> SteeredGenerator::create(Options options) {
   return made;
 }
 
-Result<FrameRecord> SteeredGenerator::frame(const Pose& pose) {
+Result<FrameRecord> SteeredGenerator::frame(const Pose& pose, double timeS) {
   *pose_ = pose;
-  return generator_->frame(0, false, false);
+  return generator_->frame(timeS, false, false);
 }
 
 }  // namespace eye

@@ -9,9 +9,11 @@ namespace eye {
 
 class SteeredGenerator {
  public:
-  // Off-screen, every frame drawn and complete: what `options` say of sources, window and pace does not count.
-  static Result<SteeredGenerator> create(Options options);
-  Result<FrameRecord> frame(const Pose& pose);
+  // Off-screen, every frame drawn: what `options` say of sources, window and pace does not count. `offline`: every
+  // frame is complete; else terrain comes when it comes, as in a live run.
+  static Result<SteeredGenerator> create(Options options, bool offline = true);
+  // `timeS`: the frame's clock; it never goes back.
+  Result<FrameRecord> frame(const Pose& pose, double timeS = 0);
   ImageGenerator& generator() { return *generator_; }
 
  private:

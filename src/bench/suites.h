@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "bench/report.h"
@@ -13,7 +14,8 @@ namespace eye {
 struct SuiteOptions {
   std::string terrain;  // a database; empty: the embedded demo
   std::string device;
-  bool quick = false;  // seconds instead of minutes: fewer views and frames
+  std::vector<std::string> tracks;  // recordings for the suite flight
+  bool quick = false;               // seconds instead of minutes: fewer views and frames
   std::function<void(const std::string& what, double share)> progress;  // 0 to 1 of the suite; may be empty
 };
 
@@ -26,5 +28,6 @@ std::span<const Suite> suites();  // in the order in which `all` runs them
 
 Result<SuiteReport> runCullingSuite(const SuiteOptions& options);
 Result<SuiteReport> runSelectorSuite(const SuiteOptions& options);
+Result<SuiteReport> runFlightSuite(const SuiteOptions& options);
 
 }  // namespace eye

@@ -85,6 +85,27 @@ TEST_CASE("Suite selector: every fixed choice and both modes on the same frames"
   CHECK(report->rows[0]["worst_600_frames_loss"] == 0.0);  // off against itself
 }
 
+TEST_CASE("Suite flight: every task with and without prediction, in real time") {
+  const auto report = quickly(runFlightSuite);
+  if (!report) return;
+  requireKeys(report->summary, {"bytes_saved", "unpredicted_widening", "paging_cost", "prediction"});
+  CHECK(report->summary["paging_cost"] > 0);
+  REQUIRE(report->rows.size() >= 3 * 2);
+  for (size_t i = 0; i < report->rows.size(); ++i) {
+    const auto& row = report->rows[i];
+    requireKeys(row, {"task", "rate_hz", "predictor", "missed_frames", "missing_chunk_frames", "bytes_read", "frame_ms",
+                      "cpu_ms", "smoothness", "published", "pager"});
+    CHECK(row["rate_hz"] == 25);
+    CHECK(row["slots"] == 51);  // 2 s
+    CHECK(row["slots"] == row["frames"].get<int>() + row["missed_frames"].get<int>());
+    CHECK(row["bytes_read"] > 0);
+    CHECK(row["missing_chunk_frames"] > 0);  // cold: the first picture is never complete
+    CHECK(row["frame_ms"]["max"] >= row["frame_ms"]["median"]);
+    if (i < 6) CHECK(row["predictor"] == (i % 2 == 0 ? "none" : "kalman"));
+  }
+  CHECK(report->plots.size() == 2);
+}
+
 TEST_CASE("A suite over no database says so") {
   SuiteOptions options;
   options.terrain = "/nowhere/none.eyt";

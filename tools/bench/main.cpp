@@ -41,6 +41,10 @@ void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--out", args.out, "Folder for report.json and report.html; made where it is missing")
       ->type_name("DIR")
       ->required();
+  app.add_option("--track", args.options.tracks,
+                 "Recorded flight for the suite flight (CSV, IGC or pcap); may be given again")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   app.add_flag("--quick", args.options.quick, "Fewer views and frames: seconds a suite, to see that it works");
   app.add_option("--device", args.options.device, "Part of a Vulkan device's name; eyepoint lists them")
       ->type_name("NAME");
