@@ -112,10 +112,11 @@ ReportTable figuresTable(const std::vector<FlightRow>& rows, double startS) {
 }
 
 ReportTable pagerTable(const std::vector<FlightRow>& rows) {
-  ReportTable table{.caption = "The pager in these flights",
-                    .groups = {{"", 3}, {"groups and chunks since the start", 4}, {"at the end", 3}, {"means", 4}},
-                    .columns = {"task", "rate", "predictor", "requested", "loaded", "refused", "evicted", "resident",
-                                "cached", "GPU MiB", "interval s", "ahead s", "keeps up", "coarsening"}};
+  ReportTable table{
+      .caption = "The pager in these flights",
+      .groups = {{"", 3}, {"chunks since the start (refused: groups)", 4}, {"at the end", 3}, {"means", 4}},
+      .columns = {"task", "rate", "predictor", "requested", "loaded", "refused", "evicted", "resident", "cached",
+                  "GPU MiB", "interval s", "ahead s", "keeps up", "coarsening"}};
   for (const FlightRow& row : rows) {
     const FlightFigures& f = row.figures;
     table.rows.push_back(
