@@ -17,8 +17,9 @@ namespace eye {
 
 struct FrameRecord {
   uint64_t frame = 0;
-  double timeS = 0;  // the frame's clock
-  Pose pose;
+  double timeS = 0;    // the frame's clock
+  Pose pose;           // as the host gave it
+  DisplayedEye eye;    // as it was drawn
   bool drawn = true;   // false: the last picture still held (--redraw changed)
   double frameMs = 0;  // start of the frame to its completion; no waiting for the pace
   double cpuMs = 0;    // of the whole process, every thread

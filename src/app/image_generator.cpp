@@ -125,7 +125,7 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   Result<std::unique_ptr<Pager>> pager = Pager::create(terrain, *made->renderer_, pagerOptions);
   if (!pager) return tl::unexpected(pager.error());
   made->pager_ = std::move(*pager);
-  made->pose_ = waitingPose(made->pager_->info());
+  made->hostPose_ = waitingPose(made->pager_->info());
   spdlog::info("{} on {}, state from {}", terrain, made->renderer_->device().name, made->sources_.description());
   return made;
 }
@@ -192,8 +192,12 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   const double cpuBeganMs = processCpuMs();
 
   const SourceSample host = sources_.sample(timeS);
-  if (host.valid) pose_ = host.pose;
+  if (host.valid) hostPose_ = host.pose;
   finished_ = host.finished;
+  const double nowS = sources_.anyLive() ? static_cast<double>(beganNs) * 1e-9 : timeS;
+  tracker_.observe(host, hostPose_, nowS);
+  const DisplayedEye eye = tracker_.eye();
+  pose_ = eye.pose;
   view_ = currentView(pose_);
   const Lighting lighting = currentLighting(host);
   // The keys switch what the options say.
@@ -201,8 +205,6 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   const bool overlay = (keys.overlay % 2 != 0) != options_.overlay;
   const DebugView debug = switched(options_.debugView, keys);
   const bool frozen = isFrozen(debug);
-  const double nowS = sources_.anyLive() ? static_cast<double>(beganNs) * 1e-9 : timeS;
-  tracker_.observe(host, pose_, nowS);
   if (!frozen) {
     const LookAhead ahead = tracker_.lookAhead(view_);
     select(&ahead);
@@ -263,7 +265,8 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
 
   record.frame = number_++;
   record.timeS = timeS;
-  record.pose = pose_;
+  record.pose = hostPose_;
+  record.eye = eye;
   record.drawn = draw;
   record.frameMs = static_cast<double>(endedNs - beganNs) * 1e-6;
   record.cpuMs = processCpuMs() - cpuBeganMs;

@@ -79,7 +79,7 @@ class ImageGenerator {
   int settledFrames_ = 0;  // drawn behind one another with nothing missing
 
   uint64_t number_ = 0;
-  Pose pose_;
+  Pose hostPose_, pose_;  // as the host says; as it is drawn
   bool finished_ = false;
   View view_;
   Selection selection_;

@@ -131,6 +131,19 @@ void setRate(Options& options, const std::string& text) {
   options.rateHz = (*number)[0];
 }
 
+void setHostDelay(Options& options, const std::string& text) {
+  if (text == "auto" || text == "off") {
+    options.hostDelay = text == "off" ? HostDelayMode::off : HostDelayMode::automatic;
+    return;
+  }
+  const auto number = splitNumbers(text, ' ', 1);
+  if (!number || (*number)[0] < 0 || (*number)[0] > 500)
+    throw CLI::ValidationError("--host-delay",
+                               fmt::format("'{}' is no delay; give milliseconds from 0 to 500, auto or off", text));
+  options.hostDelay = HostDelayMode::fixed;
+  options.hostDelayMs = (*number)[0];
+}
+
 void setBackground(Options& options, const std::string& text) {
   const auto n = splitNumbers(text, ',', 3);
   if (!n || std::ranges::any_of(*n, [](double part) { return part < 0 || part > 1; }))
@@ -155,6 +168,12 @@ void addTerrainAndHost(CLI::App& app, Options& o) {
       ->type_name("URL")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--host-delay", [&o](const std::string& t) { setHostDelay(o, t); },
+         "A live host's aircraft is drawn where it was, or will have been, this long before each\n"
+         "frame: auto (default) by how unevenly packets come; off: where the newest packet has it")
+      ->type_name("auto/off/MS")
       ->group(group);
   app.add_option("--pose", o.pose, "Holds still: lat,lon,alt,heading,pitch,roll (degrees, metres)")
       ->type_name("P")
@@ -338,12 +357,12 @@ bool takesNumber(CLI::Option& option) {
   }
 }
 
-// Numbers and flags have types of their own in TOML; everything else is text. `rate` and `vsync` are words that may be
-// a number or a flag.
+// Numbers and flags have types of their own in TOML; everything else is text. `rate`, `host-delay` and `vsync` are
+// words that may be a number or a flag.
 Result<void> checkType(CLI::Option& option, const std::string& key, const ConfigWord& word) {
   const bool isFlag = option.get_items_expected_max() == 0, isNumber = takesNumber(option);
   if (word.type == (isFlag ? ConfigType::flag : isNumber ? ConfigType::number : ConfigType::text)) return {};
-  if (key == "rate" && word.type == ConfigType::number) return {};
+  if ((key == "rate" || key == "host-delay") && word.type == ConfigType::number) return {};
   if (key == "vsync" && word.type == ConfigType::flag) return {};
   const std::string given = word.type == ConfigType::text ? '"' + word.text + '"' : word.text;
   const std::string wanted =

@@ -15,6 +15,7 @@
 namespace eye {
 
 enum class CullingMode { none, frustum, dynamic };
+enum class HostDelayMode { automatic, off, fixed };
 enum class PredictorMode { none, kalman };
 enum class DepthMapMode { automatic, off, fixed };
 
@@ -53,6 +54,9 @@ struct Options {
   int predictorStates = 9;                                // 6, 9 or 12
   std::optional<double> processNoise, measurementSigmaM;  // of the predictor; unset: estimated from the flight
   double regionWidening = 1;  // of the distances within which terrain is loaded ahead; benchmarks compare others
+
+  HostDelayMode hostDelay = HostDelayMode::automatic;
+  double hostDelayMs = 0;  // with HostDelayMode::fixed
 
   // Light and air. Local solar time at the eye, hours; unset visibility: the host's, else 60 km.
   double timeOfDayH = 9.0;

@@ -22,6 +22,10 @@ Json membershipOf(const std::optional<Decision>& decision) {
   return {{"altitude", decision->altitudeMembership}, {"pitch", decision->pitchMembership}, {"sum", decision->sum}};
 }
 
+Json poseOf(const Pose& pose) {
+  return {pose.position.latDeg, pose.position.lonDeg, pose.position.altM, pose.headingDeg, pose.pitchDeg, pose.rollDeg};
+}
+
 Json predictionOf(const PredictionRecord& r) {
   if (r.horizonS <= 0) return {{"horizon_s", nullptr}, {"error_m", nullptr}, {"radius_m", nullptr}};
   return {{"horizon_s", r.horizonS}, {"error_m", r.errorM ? Json(*r.errorM) : Json(nullptr)}, {"radius_m", r.radiusM}};
@@ -45,9 +49,8 @@ Json jsonOf(const FrameRecord& r) {
                    {"drawn", r.clusters.drawn}};
   return Json{{"frame", r.frame},
               {"time_s", r.timeS},
-              {"pose",
-               {r.pose.position.latDeg, r.pose.position.lonDeg, r.pose.position.altM, r.pose.headingDeg,
-                r.pose.pitchDeg, r.pose.rollDeg}},
+              {"pose", poseOf(r.pose)},
+              {"eye", poseOf(r.eye.pose)},
               {"drawn", r.drawn},
               {"frame_ms", r.frameMs},
               {"cpu_ms", r.cpuMs},
@@ -85,6 +88,8 @@ Json jsonOf(const FrameRecord& r) {
                {{"packets", r.host.packets},
                 {"rejected", r.host.rejected},
                 {"lost", r.host.lost},
+                {"delay_ms", r.eye.delayMs},
+                {"silent", r.eye.silent},
                 {"age_ms", r.hostAgeMs < 0 ? Json(nullptr) : Json(r.hostAgeMs)}}}};
 }
 

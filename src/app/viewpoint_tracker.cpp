@@ -14,6 +14,15 @@ constexpr double kFastestMS = 10000;
 constexpr double kRadPerDeg = std::numbers::pi / 180;
 // While the predictor does not know the velocity yet, its radius is that of everything that flies.
 constexpr double kGreatestRadiusM = 2000;
+// The eye goes this long without a packet, then it waits.
+constexpr double kFarthestExtrapolationS = 0.2;
+// Up to so much jitter the filter foresees as smoothly as it looks back (30 ms: 0.17 m of stutter at 150 m/s either
+// way), and each millisecond of delay would be one of transport delay. What is beyond it is waited for.
+constexpr double kForeseenJitterS = 0.05, kLongestDelayS = 0.1;
+// Before the filter has seen so many it does not know the velocity.
+constexpr int kFewestObservations = 12;
+// Farther from the newest packet than twice what its age explains, and this, the filter is wrong.
+constexpr double kBelievableM = 10;
 constexpr double kSmoothing = 0.05;  // a frame's share in the mean frame rate and speed
 
 double halfFovRad(const Frustum& frustum) {
@@ -55,16 +64,38 @@ void ViewpointTracker::observe(const SourceSample& host, const Pose& pose, doubl
   }
 
   if (options_.predictor == PredictorMode::none) return;
+  live_ = host.live && host.valid;
   if (host.live && host.arrivedNs == observedNs_) return;  // nothing new
+  if (live_) jitter_.observe(static_cast<double>(host.arrivedNs) * 1e-9);
   observedNs_ = host.arrivedNs;
+  standsStill_ = pose == observed_;
+  observed_ = pose;
+  ++sinceRestart_;
   predictor_.observe(host.live ? static_cast<double>(host.arrivedNs) * 1e-9 : nowS, pose);
   const PredictorCounts& counts = predictor_.state().counts;
   jumped_ = jumped_ || counts.teleports + counts.resets != restarts_;
   restarts_ = counts.teleports + counts.resets;
   if (jumped_) {
+    sinceRestart_ = 0;
     foreseen_.clear();
     errorM_.reset();
   }
+}
+
+DisplayedEye ViewpointTracker::eye() const {
+  DisplayedEye eye{pose_};
+  if (!live_ || options_.hostDelay == HostDelayMode::off) return eye;
+  const double arrivedS = static_cast<double>(observedNs_) * 1e-9;
+  eye.silent = nowS_ - arrivedS > kFarthestExtrapolationS;
+  if (standsStill_ || sinceRestart_ < kFewestObservations) return eye;
+  const double delayS = options_.hostDelay == HostDelayMode::fixed
+                            ? options_.hostDelayMs * 1e-3
+                            : std::clamp(jitter_.jitterS() - kForeseenJitterS, 0.0, kLongestDelayS);
+  const Prediction prediction = predictor_.at(std::min(nowS_ - delayS, arrivedS + kFarthestExtrapolationS));
+  const double ageS = std::abs(nowS_ - delayS - arrivedS);
+  const double offM = glm::length(prediction.ecefM - eyeEcefM_);
+  if (!prediction.valid || offM > 2 * glm::length(prediction.velocityEcefMS) * ageS + kBelievableM) return eye;
+  return {prediction.pose, delayS * 1e3, eye.silent};
 }
 
 ViewpointAhead ViewpointTracker::ahead(const Vec3d& nowForwardEcef, double inS) const {

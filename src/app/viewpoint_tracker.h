@@ -9,6 +9,7 @@
 #include "geo/view.h"
 #include "link/state_source.h"
 #include "paging/schedule.h"
+#include "predict/jitter_meter.h"
 #include "predict/viewpoint_predictor.h"
 
 namespace eye {
@@ -20,6 +21,13 @@ struct PredictionRecord {
   std::optional<double> errorM;  // of the newest prediction whose time has come
 };
 
+// The eye of a frame.
+struct DisplayedEye {
+  Pose pose;
+  double delayMs = 0;   // behind the frame's time
+  bool silent = false;  // the host has said nothing for so long that the eye waits where it was last foreseen
+};
+
 class ViewpointTracker {
  public:
   // The options must live longer.
@@ -27,6 +35,9 @@ class ViewpointTracker {
 
   // Once a frame. `nowS`: a clock that never goes back; for a live host the one that arrival times are on.
   void observe(const SourceSample& host, const Pose& pose, double nowS);
+  // Where a live host's aircraft is at the frame's time, or a little before it (--host-delay): packets come neither
+  // when frames do nor evenly, and an eye that is put where the newest one says stutters. Otherwise the pose observed.
+  DisplayedEye eye() const;
   // From the view of this frame on. Valid until the next observe().
   LookAhead lookAhead(const View& view) const;
   // What the statistics say of predictions `horizonS` ahead.
@@ -37,12 +48,15 @@ class ViewpointTracker {
 
   const Options& options_;
   ViewpointPredictor predictor_;
-  Pose pose_;
+  Pose pose_, observed_;
   Vec3d eyeEcefM_{};
   double nowS_ = 0, speedMS_ = 0, frameRateHz_ = 60;
   bool started_ = false, jumped_ = false;
   int64_t observedNs_ = 0;  // arrival of the newest packet observed
-  uint64_t restarts_ = 0;   // of the predictor
+  JitterMeter jitter_;
+  bool live_ = false, standsStill_ = false;
+  int sinceRestart_ = 0;   // observations
+  uint64_t restarts_ = 0;  // of the predictor
   struct Foreseen {
     double atS;
     Vec3d ecefM;

@@ -1,0 +1,189 @@
+#include "app/viewpoint_tracker.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "geo/frames.h"
+#include "link/flight_plan.h"
+
+namespace eye {
+namespace {
+
+// Turns and climbs at 150 m/s.
+FlightPath flightPath() {
+  FlightPlan plan;
+  plan.start = {49.2, 20.0, 3000};
+  plan.startHeadingDeg = 40;
+  plan.startSpeedMS = 150;
+  plan.legs = {{10, 150, 0, 0}, {20, 150, 3, 5}, {10, 170, 0, 0}, {20, 150, -4, -5}};
+  return FlightPath(plan);
+}
+
+struct Link {
+  double jitterS = 0, loss = 0;
+  double burstS = 0;  // packets wait for each other, up to this long
+};
+
+struct Shown {
+  double rmsM = 0;      // from where the aircraft truly is at the frame's time
+  double stutterM = 0;  // root mean square of second differences, in excess of the true path's
+  double delayMs = 0;
+};
+
+// A 60 Hz host whose frames are not ours, packets with delays of up to `jitterS`.
+Shown fly(const Link& link, const Options& options) {
+  const FlightPath path = flightPath();
+  std::mt19937 random(2);
+  std::uniform_real_distribution<> uniform(0, 1);
+  std::vector<std::pair<double, double>> packets;  // arrival, time it is true for
+  for (double t = 0; t < path.durationS(); t += 1 / 60.0)
+    if (uniform(random) >= link.loss) packets.emplace_back(t + uniform(random) * link.jitterS, t);
+  double burstAtS = 0;
+  for (auto& [arrivalS, trueS] : packets) {
+    if (link.burstS == 0) break;
+    while (burstAtS < trueS) burstAtS += uniform(random) * link.burstS;
+    arrivalS = burstAtS;
+  }
+  std::ranges::sort(packets);
+
+  ViewpointTracker tracker(options);
+  size_t next = 0;
+  SourceSample host;
+  host.live = true;
+  std::vector<Vec3d> shown, truth;
+  Shown result;
+  for (int frame = 0; frame < 60 * path.durationS(); ++frame) {
+    const double nowS = 0.007 + frame / 59.94;
+    for (; next < packets.size() && packets[next].first <= nowS; ++next) {
+      host.valid = true;
+      host.pose = path.poseAt(packets[next].second);
+      host.arrivedNs = static_cast<int64_t>((1000 + packets[next].first) * 1e9);
+    }
+    if (!host.valid) continue;
+    tracker.observe(host, host.pose, 1000 + nowS);
+    const DisplayedEye eye = tracker.eye();
+    result.delayMs = eye.delayMs;
+    if (frame < 120) continue;
+    shown.push_back(ecefFromGeodetic(eye.pose.position));
+    truth.push_back(ecefFromGeodetic(path.positionAt(nowS)));
+  }
+  for (size_t i = 2; i < shown.size(); ++i) {
+    const Vec3d off = shown[i] - truth[i];
+    result.rmsM += glm::dot(off, off);
+    const Vec3d bend = (shown[i] - 2.0 * shown[i - 1] + shown[i - 2]) - (truth[i] - 2.0 * truth[i - 1] + truth[i - 2]);
+    result.stutterM += glm::dot(bend, bend);
+  }
+  result.rmsM = std::sqrt(result.rmsM / static_cast<double>(shown.size()));
+  result.stutterM = std::sqrt(result.stutterM / static_cast<double>(shown.size()));
+  return result;
+}
+
+Options withDelay(HostDelayMode mode) {
+  Options options;
+  options.hostDelay = mode;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("a live host's aircraft is drawn where it is at the frame's time, without stutter") {
+  const Options newest = withDelay(HostDelayMode::off), automatic = withDelay(HostDelayMode::automatic);
+  for (const Link& link : {Link{0, 0}, Link{0.005, 0}, Link{0.03, 0.2}}) {
+    const Shown untreated = fly(link, newest), treated = fly(link, automatic);
+    WARN("jitter " << link.jitterS * 1e3 << " ms, loss " << link.loss << ": newest packet " << untreated.rmsM
+                   << " m off, stutter " << untreated.stutterM << " m; smoothed " << treated.rmsM << " m, "
+                   << treated.stutterM << " m, " << treated.delayMs << " ms behind");
+    CHECK(untreated.delayMs == 0);
+    CHECK(treated.delayMs == 0);
+    CHECK(treated.rmsM * 1.5 < untreated.rmsM);
+    CHECK(treated.stutterM * 4 < untreated.stutterM);
+  }
+}
+
+TEST_CASE("the delay: as asked for, and by default what jitter goes beyond 50 ms") {
+  Options fixed = withDelay(HostDelayMode::fixed);
+  fixed.hostDelayMs = 40;
+  const Shown asked = fly({0, 0}, fixed);
+  CHECK(asked.delayMs == Approx(40));
+  CHECK(asked.rmsM == Approx(0.04 * 157).epsilon(0.05));  // 150 to 170 m/s
+  const double delayMs = fly({0, 0, 0.25}, withDelay(HostDelayMode::automatic)).delayMs;
+  CHECK(delayMs > 5);
+  CHECK(delayMs <= 100);
+}
+
+TEST_CASE("an aircraft that stands is drawn where it stands, and so is one just heard of") {
+  const Options options = withDelay(HostDelayMode::automatic);
+  ViewpointTracker tracker(options);
+  SourceSample host;
+  host.live = host.valid = true;
+  const FlightPath path = flightPath();
+  for (int i = 0; i < 300; ++i) {
+    host.pose = path.poseAt(i < 200 ? i / 60.0 : 200 / 60.0);
+    host.arrivedNs = static_cast<int64_t>((500 + i / 60.0) * 1e9);
+    tracker.observe(host, host.pose, 500 + i / 60.0 + 0.004);
+    if (i < 5 || i > 201) CHECK(tracker.eye().pose == host.pose);
+    if (i > 20 && i < 200) CHECK_FALSE(tracker.eye().pose == host.pose);
+  }
+}
+
+TEST_CASE("a host that falls silent: the eye goes on a fifth of a second, then waits, and says so") {
+  const Options options = withDelay(HostDelayMode::automatic);
+  ViewpointTracker tracker(options);
+  SourceSample host;
+  host.live = host.valid = true;
+  const FlightPath path = flightPath();
+  double nowS = 800;
+  for (int i = 0; i < 180; ++i, nowS += 1 / 60.0) {
+    host.pose = path.poseAt(i / 60.0);
+    host.arrivedNs = static_cast<int64_t>(nowS * 1e9);
+    tracker.observe(host, host.pose, nowS);
+    CHECK_FALSE(tracker.eye().silent);
+  }
+  const Vec3d last = ecefFromGeodetic(host.pose.position);
+  for (int i = 0; i < 120; ++i, nowS += 1 / 60.0) {
+    tracker.observe(host, host.pose, nowS);
+    const double goneM = glm::distance(ecefFromGeodetic(tracker.eye().pose.position), last);
+    CHECK(goneM < 0.2 * 150 + 3);
+    if (i > 14) {
+      CHECK(tracker.eye().silent);
+      CHECK(goneM == Approx(0.2 * 150).margin(3));
+    }
+  }
+}
+
+TEST_CASE("what is not live is drawn as it is, and the pager gets the flight ahead") {
+  const Options options = withDelay(HostDelayMode::automatic);
+  ViewpointTracker tracker(options);
+  const FlightPath path = flightPath();
+  SourceSample scenario;
+  scenario.valid = true;
+  Pose pose;
+  double nowS = 0;
+  for (; nowS < 5; nowS += 1 / 60.0) {
+    pose = path.poseAt(nowS);
+    tracker.observe(scenario, pose, nowS);
+    CHECK(tracker.eye().pose == pose);
+  }
+  const LookAhead look = tracker.lookAhead(makeView(pose, symmetricFrustum(60, 800, 600, 1), 800, 600));
+  CHECK(look.speedMS == Approx(150).epsilon(0.05));
+  CHECK_FALSE(look.jumped);
+  const Vec3d then = look.at(2).ecefM;
+  CHECK(glm::distance(then, ecefFromGeodetic(path.positionAt(nowS - 1 / 60.0 + 2))) < 5);
+  CHECK(look.at(2).inS == 2);
+  CHECK(tracker.record(2).horizonS == 2);
+  // A jump is told once.
+  pose.position.latDeg = -30;
+  tracker.observe(scenario, pose, nowS);
+  CHECK(tracker.lookAhead(makeView(pose, symmetricFrustum(60, 800, 600, 1), 800, 600)).jumped);
+
+  Options none = options;
+  none.predictor = PredictorMode::none;
+  ViewpointTracker held(none);
+  for (double t = 0; t < 1; t += 1 / 60.0) held.observe(scenario, path.poseAt(t), t);
+  const LookAhead still = held.lookAhead(makeView(pose, symmetricFrustum(60, 800, 600, 1), 800, 600));
+  CHECK(still.at(5).ecefM == still.at(0).ecefM);
+  CHECK(held.record(2).horizonS == 0);
+}
+
+}  // namespace eye
