@@ -34,7 +34,7 @@ tools/lint.sh
 # A report of a sanitizer ends the program with an error, so it ends this script.
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 TSAN_OPTIONS=halt_on_error=1
 if [ "$sanitizers" = yes ]; then
-  sanitize asan base geo terrain bake paging link
+  sanitize asan base geo predict terrain bake paging link
   sanitize tsan telemetry paging link
 fi
 
