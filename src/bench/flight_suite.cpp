@@ -54,6 +54,7 @@ class Flights {
   Result<PagingCost> costOf(const FlightTask& task) {
     Options options = optionsFor(task);
     options.cacheGpuMiB = options.cacheRamMiB = kAllMiB;
+    options.depthMap = DepthMapMode::off;  // what the selector picks is not paging's cost
     std::vector<double> coldMs, residentMs;
     uint64_t residentBytesRead = 0;
     for (int pair = 0; pair < costPairs(); ++pair) {
