@@ -16,6 +16,8 @@ namespace eye {
 namespace {
 
 constexpr double kDefaultVisibilityM = 60000;
+constexpr double kTimeOfDayH = 9;
+constexpr double kFrameBudgetMs = 1000.0 / 60;
 // The date of --time-of-day: an equinox, when the sun rises due east at six everywhere.
 constexpr int kYear = 2026, kMonth = 3, kDay = 20;
 
@@ -33,7 +35,7 @@ Pose waitingPose(const DatabaseInfo& info) {
 
 bool operator==(const View& a, const View& b) {
   return a.eyeEcefM == b.eyeEcefM && a.eyeFromEcef == b.eyeFromEcef && a.widthPx == b.widthPx &&
-         a.heightPx == b.heightPx;
+         a.heightPx == b.heightPx && a.frustum == b.frustum;
 }
 
 }  // namespace
@@ -71,6 +73,10 @@ SourceSample Sources::sample(double timeS) {
   newest.counts = counts;
   newest.finished = finished;
   return newest;
+}
+
+void Sources::frameDone(const FrameReport& report) {
+  for (const auto& source : sources_) source->frameDone(report);
 }
 
 bool Sources::anyLive() const {
@@ -130,18 +136,22 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   return made;
 }
 
-View ImageGenerator::currentView(const Pose& pose) const {
+// What the user says of the frustum counts before what the host does.
+View ImageGenerator::currentView(const Pose& pose, const ViewEdges& hosts) const {
   const int width = renderer_->widthPx(), height = renderer_->heightPx();
   const Frustum frustum = options_.frustumDeg
                               ? offAxisFrustum((*options_.frustumDeg)[0], (*options_.frustumDeg)[1],
                                                (*options_.frustumDeg)[2], (*options_.frustumDeg)[3], options_.nearM)
-                              : symmetricFrustum(options_.fovDeg, width, height, options_.nearM);
+                              : frustumWith(symmetricFrustum(options_.fovDeg, width, height, options_.nearM), hosts);
   return makeView(pose, frustum, width, height);
 }
 
 Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
   Lighting lighting;
-  const double julianDay = julianDayFromLocalSolarTime(options_.timeOfDayH, pose_.position.lonDeg, kYear, kMonth, kDay);
+  const bool hostsClock = !options_.timeOfDayH && host.julianDayUtc;
+  const double julianDay = hostsClock ? *host.julianDayUtc
+                                      : julianDayFromLocalSolarTime(options_.timeOfDayH.value_or(kTimeOfDayH),
+                                                                    pose_.position.lonDeg, kYear, kMonth, kDay);
   lighting.sunDirectionEcef = sunDirectionEcef(julianDay);
   lighting.visibilityM = options_.visibilityM.value_or(host.visibilityM.value_or(kDefaultVisibilityM));
   return lighting;
@@ -198,7 +208,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   tracker_.observe(host, hostPose_, nowS);
   const DisplayedEye eye = tracker_.eye();
   pose_ = eye.pose;
-  view_ = currentView(pose_);
+  view_ = currentView(pose_, host.edges);
   const Lighting lighting = currentLighting(host);
   // The keys switch what the options say.
   const WindowKeys keys = renderer_->keys();
@@ -282,6 +292,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   record.prediction = tracker_.record(record.pace.memoryS);
   record.host = host.counts;
   if (host.arrivedNs != 0) record.hostAgeMs = static_cast<double>(endedNs - host.arrivedNs) * 1e-6;
+  sources_.frameDone({record.frameMs > kFrameBudgetMs, record.selection.missing > 0});
   overlay_.add(record);
   return record;
 }

@@ -22,6 +22,7 @@ class Sources {
   static Result<Sources> open(const std::vector<std::string>& urls);
   static Sources of(std::unique_ptr<StateSource> source);
   SourceSample sample(double timeS);
+  void frameDone(const FrameReport& report);
   bool anyLive() const;
   bool allFixed() const;
   const std::string& description() const { return description_; }
@@ -62,7 +63,7 @@ class ImageGenerator {
 
  private:
   explicit ImageGenerator(const Options& options) : options_(options), tracker_(options_) {}
-  View currentView(const Pose& pose) const;
+  View currentView(const Pose& pose, const ViewEdges& hosts) const;
   Lighting currentLighting(const SourceSample& host) const;
   void select(const LookAhead* ahead);
   bool isFrozen(const DebugView& debug) const;

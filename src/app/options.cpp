@@ -162,9 +162,10 @@ void addTerrainAndHost(CLI::App& app, Options& o) {
   app.add_option("--terrain", o.terrain, "Terrain database made by eyepoint-bake; default: the embedded demo")
       ->type_name("FILE")
       ->group(group);
-  app.add_option("--host", o.hosts,
-                 "Where aircraft state comes from (may be given again):\n"
-                 "native-fdm://ADDR:PORT, file://TRACK, demo://, pose://lat,lon,alt,h,p,r")
+  app.add_option(
+         "--host", o.hosts,
+         "Where aircraft state comes from (may be given again):\n"
+         "native-fdm://, cigi://, dis:// or xplane://ADDR:PORT, file://TRACK, demo://, pose://lat,lon,alt,h,p,r")
       ->type_name("URL")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -303,7 +304,7 @@ void addQuality(CLI::App& app, Options& o) {
       ->type_name("MIB")
       ->check(wholeWithin(16, 1 << 20))
       ->group(group);
-  app.add_option("--time-of-day", o.timeOfDayH, "Local solar time, hours; default 9")
+  app.add_option("--time-of-day", o.timeOfDayH, "Local solar time, hours; default the host's, else 9")
       ->type_name("H")
       ->check(within(0.0, 24.0))
       ->group(group);

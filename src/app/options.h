@@ -58,8 +58,9 @@ struct Options {
   HostDelayMode hostDelay = HostDelayMode::automatic;
   double hostDelayMs = 0;  // with HostDelayMode::fixed
 
-  // Light and air. Local solar time at the eye, hours; unset visibility: the host's, else 60 km.
-  double timeOfDayH = 9.0;
+  // Light and air. Local solar time at the eye, hours; unset: the host's clock, else 9. Unset visibility: the host's,
+  // else 60 km.
+  std::optional<double> timeOfDayH;
   std::optional<double> visibilityM;
 
   // Outputs.

@@ -12,6 +12,7 @@ namespace eye {
 struct Frustum {
   double tanLeft = -1, tanRight = 1, tanBottom = -0.75, tanTop = 0.75;
   double nearM = 1;  // depth = nearM / z (reversed-Z, infinite far plane); the precision does not depend on it
+  bool operator==(const Frustum&) const = default;
 };
 
 // `fovDeg`: the full horizontal angle, (0, 179]. Vertical extent follows from the size.

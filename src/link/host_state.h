@@ -1,4 +1,4 @@
-// The newest aircraft state and the mailbox through which it reaches the frame.
+// The mailbox through which what hosts say reaches the frame.
 #pragma once
 
 #include <cstdint>
@@ -9,29 +9,30 @@
 
 namespace eye {
 
-struct HostState {
-  Pose pose;
-  int64_t arrivedNs = 0;            // monotonicNs() when the packet that carried it came in
-  std::optional<double> hostTimeS;  // the host's own clock where the protocol has one
-  std::optional<double> visibilityM;
-};
-
 struct HostCounts {
   uint64_t packets = 0;   // datagrams received, good and bad
-  uint64_t rejected = 0;  // wrong size, version, NaN, out of range
+  uint64_t rejected = 0;  // wrong size, version, sender, NaN, out of range
   uint64_t lost = 0;      // gaps in the protocol's own numbering, where it has one
 };
 
 // A latest-value mailbox: one writer (the link thread), one reader (the frame).
+template <class State>
 class Mailbox {
  public:
-  void put(const HostState& state);
-  void count(const HostCounts& counts);
   struct Snapshot {
-    std::optional<HostState> state;
+    std::optional<State> state;
     HostCounts counts;
   };
-  Snapshot take() const;
+  // State and counts together: whoever sees a packet counted also sees what it said.
+  void put(const std::optional<State>& state, const HostCounts& counts) {
+    const std::lock_guard lock(mutex_);
+    if (state) latest_.state = state;
+    latest_.counts = counts;
+  }
+  Snapshot take() const {
+    const std::lock_guard lock(mutex_);
+    return latest_;
+  }
 
  private:
   mutable std::mutex mutex_;

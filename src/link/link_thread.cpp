@@ -15,39 +15,32 @@ constexpr int64_t kComplaintEveryNs =
 
 }  // namespace
 
-LinkThread::LinkThread(UdpSocket socket, DatagramParser parser, Mailbox& mailbox, std::string name)
-    : socket_(std::move(socket)),
-      parser_(std::move(parser)),
-      mailbox_(mailbox),
+LinkThread::LinkThread(const UdpSocket& socket, LinkProtocol& protocol, std::string name)
+    : socket_(socket),
+      protocol_(protocol),
       name_(std::move(name)),
       buffer_(kMaxDatagramBytes),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void LinkThread::run(const std::stop_token& stop) {
   nameThread("link");
-  while (!stop.stop_requested())
+  while (!stop.stop_requested()) {
     if (socket_.wait(kLinkPollMs)) drain();
+    protocol_.publish(counts_, monotonicNs());
+  }
 }
 
 void LinkThread::drain() {
   const TraceScope scope("link");
-  std::optional<HostState> newest;
   for (int i = 0; i < kMaxDatagramsAtOnce; ++i) {
-    const auto datagram = socket_.receive(buffer_);
+    Peer sender;
+    const auto datagram = socket_.receiveFrom(buffer_, sender);
     if (!datagram) break;
     const int64_t nowNs = monotonicNs();
     ++counts_.packets;
-    auto state = parser_(*datagram);
-    if (!state) {
-      reject(state.error(), nowNs);
-      continue;
-    }
-    newest = *state;
-    newest->arrivedNs = nowNs;
+    const auto taken = protocol_.take(*datagram, sender, nowNs);
+    if (!taken) reject(taken.error(), nowNs);
   }
-  // State before counts: whoever sees a packet counted also sees what it said.
-  if (newest) mailbox_.put(*newest);
-  mailbox_.count(counts_);
 }
 
 void LinkThread::reject(const Error& reason, int64_t nowNs) {

@@ -1,7 +1,6 @@
-// The thread named "link": takes datagrams from a socket, has them parsed and puts the newest state into a mailbox.
+// The thread named "link": takes datagrams from a socket and hands them to a protocol.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <thread>
@@ -11,15 +10,22 @@
 
 namespace eye {
 
-// What a protocol makes of one datagram; `arrivedNs` of the state is set by the link thread. Runs on the link thread.
-using DatagramParser = std::function<Result<HostState>(std::span<const std::byte>)>;
+// What a protocol makes of datagrams. Runs on the link thread.
+class LinkProtocol {
+ public:
+  virtual ~LinkProtocol() = default;
+  // An error: the datagram was not believed. `nowNs`: when it was taken from the socket.
+  virtual Result<void> take(std::span<const std::byte> datagram, const Peer& sender, int64_t nowNs) = 0;
+  // After some datagrams, and at least fifty times a second: puts what there is into the mailbox.
+  virtual void publish(const HostCounts& counts, int64_t nowNs) = 0;
+};
 
-// Owns socket and thread from construction to destruction, which takes at most some 20 ms. The mailbox must live
+// Owns the thread from construction to destruction, which takes at most some 20 ms. Socket and protocol must live
 // longer.
 class LinkThread {
  public:
   // `name`: of the link in log messages, such as its URL.
-  LinkThread(UdpSocket socket, DatagramParser parser, Mailbox& mailbox, std::string name);
+  LinkThread(const UdpSocket& socket, LinkProtocol& protocol, std::string name);
 
  private:
   void run(const std::stop_token& stop);
@@ -27,9 +33,8 @@ class LinkThread {
   void reject(const Error& reason, int64_t nowNs);
 
   // All of these belong to the link thread once it runs.
-  UdpSocket socket_;
-  DatagramParser parser_;
-  Mailbox& mailbox_;
+  const UdpSocket& socket_;
+  LinkProtocol& protocol_;
   std::string name_;
   std::vector<std::byte> buffer_;
   HostCounts counts_;

@@ -4,9 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <queue>
 #include <thread>
 
+#include "link/cigi_host.h"
 #include "link/native_fdm.h"
 #include "telemetry/trace.h"
 
@@ -45,14 +47,33 @@ void sendOne(const Departure& departure, const UdpSocket& socket, SendReport& re
     return;
   }
   ++report.datagrams;
-  if (const auto state = parseNativeFdm(departure.payload)) report.pose = state->pose;
+  if (const auto state = parseNativeFdm(departure.payload))
+    report.pose = state->pose;
+  else if (const auto pose = cigi::entityPoseIn(departure.payload))
+    report.pose = pose;
+}
+
+// The small sum keeps a last packet that falls on the end from being lost to rounding.
+uint64_t packetsIn(double durationS, double rateHz) {
+  return static_cast<uint64_t>(durationS * rateHz + 1e-6) + 1;
 }
 
 }  // namespace
 
+PacketSource cigiPacketsFromPoses(std::function<Pose(double timeS)> poseAt, double durationS, double rateHz,
+                                  cigi::Version version, std::function<uint32_t()> igFrame) {
+  const uint64_t count = packetsIn(durationS, rateHz);
+  return {count, static_cast<double>(count) / rateHz,
+          [poseAt = std::move(poseAt), igFrame = std::move(igFrame), rateHz, version,
+           number = std::make_shared<uint32_t>(0)](uint64_t index) {
+            const double timeS = static_cast<double>(index) / rateHz;
+            const uint32_t frame = (*number)++;
+            return RecordedPacket{timeS, cigi::hostMessage(version, {frame, igFrame(), frame / rateHz, poseAt(timeS)})};
+          }};
+}
+
 PacketSource packetsFromPoses(std::function<Pose(double timeS)> poseAt, double durationS, double rateHz) {
-  // The small sum keeps a last packet that falls on the end from being lost to rounding.
-  const auto count = static_cast<uint64_t>(durationS * rateHz + 1e-6) + 1;
+  const uint64_t count = packetsIn(durationS, rateHz);
   return {count, static_cast<double>(count) / rateHz, [poseAt = std::move(poseAt), rateHz](uint64_t index) {
             const double timeS = static_cast<double>(index) / rateHz;
             return RecordedPacket{timeS, buildNativeFdm({poseAt(timeS), std::nullopt})};
@@ -112,6 +133,49 @@ SendReport sendPackets(const PacketSource& source, const UdpSocket& socket, cons
     const bool more = round == 0 || options.loop;
     if (more) next = source.packetAt(index);
     nextNs = more ? nsOf(static_cast<double>(round) * source.roundS + next.timeS) : kNever;
+  }
+  report.elapsedS = static_cast<double>(monotonicNs() - startNs) / kNsPerS;
+  return report;
+}
+
+SendReport sendOnDemand(const DemandedSource& source, const UdpSocket& socket, const SendOptions& options,
+                        const std::atomic<bool>& stop, const std::function<void(const SendReport&)>& everySecond) {
+  BadLink link(options.badLink);
+  constexpr int64_t kPeriodNs = kSecondNs / 60;  // by which a reordered packet is late
+  const int64_t endNs = options.durationS ? nsOf(*options.durationS) : kNever;
+  Departures departures;
+  SendReport report;
+  uint64_t order = 0;
+  int64_t nextSecondNs = kSecondNs, sentNs = -kSecondNs;  // the first packet waits for nothing
+  const int64_t startNs = monotonicNs();
+  bool more = true;
+  while (!stop && (more || !departures.empty())) {
+    int64_t nowNs = monotonicNs() - startNs;
+    report.elapsedS = static_cast<double>(nowNs) / kNsPerS;
+    if (nowNs >= endNs) break;
+    if (nowNs >= nextSecondNs) {
+      everySecond(report);
+      nextSecondNs = (nowNs / kSecondNs + 1) * kSecondNs;
+    }
+    while (!departures.empty() && departures.top().atNs <= nowNs) {
+      sendOne(departures.top(), socket, report);
+      departures.pop();
+    }
+    const int64_t untilNs =
+        std::min({nextSecondNs, endNs, nowNs + kStopCheckNs, departures.empty() ? kNever : departures.top().atNs});
+    constexpr int64_t kNsPerMs = 1'000'000;
+    const bool demanded = source.awaitDemand(static_cast<int>((untilNs - nowNs + kNsPerMs - 1) / kNsPerMs));
+    nowNs = monotonicNs() - startNs;
+    if (!more || (!demanded && nowNs - sentNs < kSecondNs)) continue;
+    auto payload = source.packetAt(static_cast<double>(nowNs) / kNsPerS);
+    more = payload.has_value();
+    if (!more) continue;
+    sentNs = nowNs;
+    ++report.packets;
+    const auto times = link.departures(nowNs, kPeriodNs);
+    report.lost += times.empty() ? 1u : 0u;
+    report.duplicated += times.size() > 1 ? 1u : 0u;
+    for (const int64_t atNs : times) departures.push({atNs, order++, *payload});
   }
   report.elapsedS = static_cast<double>(monotonicNs() - startNs) / kNsPerS;
   return report;

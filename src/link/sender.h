@@ -10,6 +10,7 @@
 
 #include "geo/pose.h"
 #include "link/bad_link.h"
+#include "link/cigi_fields.h"
 #include "link/track_file.h"
 #include "link/udp_socket.h"
 
@@ -24,6 +25,10 @@ struct PacketSource {
 
 // native-fdm packets of poses `rateHz` times a second, from 0 to `durationS` inclusive.
 PacketSource packetsFromPoses(std::function<Pose(double timeS)> poseAt, double durationS, double rateHz);
+// CIGI host messages of the same poses; `igFrame` says which of the image generator's frames has come in last. Frame
+// numbers go on from round to round.
+PacketSource cigiPacketsFromPoses(std::function<Pose(double timeS)> poseAt, double durationS, double rateHz,
+                                  cigi::Version version, std::function<uint32_t()> igFrame);
 // Recorded packets, payload and timing unchanged. There must be at least one.
 PacketSource packetsFromRecording(std::vector<RecordedPacket> packets);
 
@@ -48,5 +53,14 @@ struct SendReport {
 // start, so that the rate does not drift. Blocks; runs on the calling thread.
 SendReport sendPackets(const PacketSource& source, const UdpSocket& socket, const SendOptions& options,
                        const std::atomic<bool>& stop, const std::function<void(const SendReport&)>& everySecond);
+
+// Packets on demand: one for each time that `awaitDemand` (which waits so many milliseconds at most) returns true, and
+// one a second while it does not. `packetAt` has nothing at the end.
+struct DemandedSource {
+  std::function<std::optional<std::vector<std::byte>>(double timeS)> packetAt;
+  std::function<bool(int timeoutMs)> awaitDemand;
+};
+SendReport sendOnDemand(const DemandedSource& source, const UdpSocket& socket, const SendOptions& options,
+                        const std::atomic<bool>& stop, const std::function<void(const SendReport&)>& everySecond);
 
 }  // namespace eye

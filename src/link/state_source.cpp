@@ -7,9 +7,7 @@
 #include <functional>
 
 #include "link/angles.h"
-#include "link/endpoint.h"
-#include "link/link_thread.h"
-#include "link/native_fdm.h"
+#include "link/live_sources.h"
 #include "link/pose_limits.h"
 #include "link/scenario.h"
 #include "link/track_file.h"
@@ -48,62 +46,20 @@ class TimedSource : public StateSource {
   double durationS_;
 };
 
-Result<HostState> parseNativeFdmState(std::span<const std::byte> datagram) {
-  const auto state = parseNativeFdm(datagram);
-  if (!state) return tl::unexpected(state.error());
-  // The packet's clock stays unused: whole seconds in FlightGear, a constant or ticks in JSBSim.
-  return HostState{state->pose, 0, std::nullopt, state->visibilityM};
-}
-
-// A host that sends datagrams: the newest state, as it came.
-class NativeFdmSource : public StateSource {
- public:
-  NativeFdmSource(UdpSocket socket, const std::string& url)
-      : thread_(std::move(socket), parseNativeFdmState, mailbox_, url) {}
-  SourceSample sample(double) override {
-    const Mailbox::Snapshot newest = mailbox_.take();
-    SourceSample sample;
-    sample.live = true;
-    sample.counts = newest.counts;
-    if (!newest.state) return sample;
-    sample.valid = true;
-    sample.pose = newest.state->pose;
-    sample.visibilityM = newest.state->visibilityM;
-    sample.arrivedNs = newest.state->arrivedNs;
-    return sample;
-  }
-  bool isLive() const override { return true; }
-  bool isFixed() const override { return false; }
-
- private:
-  Mailbox mailbox_;
-  LinkThread thread_;  // after the mailbox that it writes to
-};
-
-using Opened = Result<std::unique_ptr<StateSource>>;
-
-Opened openNativeFdm(const std::string& rest, const std::string& url) {
-  const auto endpoint = parseEndpoint(rest, kLoopbackAddress, url);
-  if (!endpoint) return tl::unexpected(endpoint.error());
-  auto socket = UdpSocket::listenOn(*endpoint);
-  if (!socket) return fail(socket.error().kind, url + ": " + socket.error().message);
-  return std::make_unique<NativeFdmSource>(std::move(*socket), url);
-}
-
-Opened openTrack(const std::string& path) {
+OpenedSource openTrack(const std::string& path) {
   auto track = loadTrack(path);
   if (!track) return tl::unexpected(track.error());
   const double durationS = track->durationS();
   return std::make_unique<TimedSource>([track = std::move(*track)](double t) { return track.at(t); }, durationS);
 }
 
-Opened openScenario(const std::string& name) {
+OpenedSource openScenario(const std::string& name) {
   const auto scenario = findScenario(name.empty() ? kDefaultScenario : name);
   if (!scenario) return tl::unexpected(scenario.error());
   return std::make_unique<TimedSource>(scenario->poseAt, scenario->durationS);
 }
 
-Opened openPose(const std::string& text) {
+OpenedSource openPose(const std::string& text) {
   const auto pose = parsePose(text);
   if (!pose) return tl::unexpected(pose.error());
   return std::make_unique<FixedSource>(*pose);
@@ -111,20 +67,23 @@ Opened openPose(const std::string& text) {
 
 }  // namespace
 
-Result<std::unique_ptr<StateSource>> openStateSource(const std::string& url) {
+Result<std::unique_ptr<StateSource>> openStateSource(const std::string& url, const OpenProbe& openProbe) {
   constexpr std::string_view kSeparator = "://";
   const size_t at = url.find(kSeparator);
   const std::string scheme = url.substr(0, at);
   const std::string rest = at == std::string::npos ? "" : url.substr(at + kSeparator.size());
   if (at != std::string::npos) {
-    if (scheme == "native-fdm") return openNativeFdm(rest, url);
+    if (scheme == "native-fdm") return openNativeFdm(url, rest);
+    if (scheme == "cigi") return openCigi(url, rest, openProbe);
+    if (scheme == "dis") return openDis(url, rest);
+    if (scheme == "xplane") return openXplane(url, rest);
     if (scheme == "file") return openTrack(rest);
     if (scheme == "demo") return openScenario(rest);
     if (scheme == "pose") return openPose(rest);
   }
   return fail(ErrorKind::usage,
-              fmt::format("host '{}' is none of native-fdm://ADDR:PORT, file://TRACK, demo://[SCENARIO], "
-                          "pose://lat,lon,alt,heading,pitch,roll",
+              fmt::format("host '{}' is none of native-fdm://ADDR:PORT, cigi://ADDR:PORT, dis://ADDR:PORT, "
+                          "xplane://ADDR:PORT, file://TRACK, demo://[SCENARIO], pose://lat,lon,alt,heading,pitch,roll",
                           url));
 }
 

@@ -1,12 +1,15 @@
 // Where aircraft state comes from, whatever the URL: a live host, a recording, a scenario or a fixed pose.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "link/ground_probe.h"
 #include "link/host_state.h"
+#include "link/view_edges.h"
 
 namespace eye {
 
@@ -14,10 +17,18 @@ struct SourceSample {
   Pose pose;
   HostCounts counts;
   std::optional<double> visibilityM;
-  int64_t arrivedNs = 0;  // of the newest packet; 0 without a live host
-  bool live = false;      // fed by packets
-  bool valid = false;     // false until the first packet of a live host
-  bool finished = false;  // a recording or scenario is over (it holds its last pose)
+  std::optional<double> julianDayUtc;  // that the host's sky shows
+  ViewEdges edges;                     // what the host has said of the view
+  int64_t arrivedNs = 0;               // of the newest packet; 0 without a live host
+  bool live = false;                   // fed by packets
+  bool valid = false;                  // false until the first packet of a live host
+  bool finished = false;               // a recording or scenario is over (it holds its last pose)
+};
+
+// What a source is told of a frame that is complete, for those whose host wants to know.
+struct FrameReport {
+  bool overBudget = false;    // it took longer than a 60th of a second
+  bool pagingBehind = false;  // terrain that it wanted finer was not there
 };
 
 class StateSource {
@@ -25,12 +36,17 @@ class StateSource {
   virtual ~StateSource() = default;
   // The state for the frame shown at `timeS` seconds since the start. Never blocks. Render thread.
   virtual SourceSample sample(double timeS) = 0;
+  // After each frame. Never blocks. Render thread.
+  virtual void frameDone(const FrameReport&) {}
   virtual bool isLive() const = 0;
   virtual bool isFixed() const = 0;  // the same pose for ever
 };
 
-// native-fdm://ADDR:PORT  file://TRACK  demo://[SCENARIO]  pose://lat,lon,alt,h,p,r
-Result<std::unique_ptr<StateSource>> openStateSource(const std::string& url);
+// native-fdm://ADDR:PORT  cigi://ADDR:PORT  dis://ADDR:PORT  xplane://ADDR:PORT  file://TRACK  demo://[SCENARIO]
+// pose://lat,lon,alt,h,p,r, the live ones with ?options: docs/PROTOCOLS.md. `openProbe` (may be empty) makes what
+// answers a host's questions about the ground; it is called at most once a source, on a thread of the source's own.
+using OpenProbe = std::function<Result<std::unique_ptr<GroundProbe>>()>;
+Result<std::unique_ptr<StateSource>> openStateSource(const std::string& url, const OpenProbe& openProbe = {});
 // "lat,lon,alt,heading,pitch,roll", degrees and metres, each checked for its range.
 Result<Pose> parsePose(const std::string& text);
 

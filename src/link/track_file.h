@@ -20,7 +20,8 @@ inline constexpr size_t kMaxTrackFileBytes = 64u << 20;
 Result<Track> parseCsvTrack(std::string_view text);
 // Flight recorder files of gliders (FAI IGC): B records.
 Result<Track> parseIgcTrack(std::string_view text);
-// The native-fdm packets of a capture, on the capture's time stamps.
+// The native-fdm or CIGI packets of a capture, whichever it has first, on the capture's time stamps. Of CIGI, what view
+// 0 sees: the poses of a host's session.
 Result<Track> parsePcapTrack(std::span<const std::byte> file);
 
 // One packet of a recording, to be sent again as it was.
@@ -28,8 +29,11 @@ struct RecordedPacket {
   double timeS = 0;  // since the first; never decreases
   std::vector<std::byte> payload;
 };
-// The native-fdm packets of a capture, good and bad, of the one address and port to which the first of them went.
-Result<std::vector<RecordedPacket>> parsePcapPackets(std::span<const std::byte> file);
+enum class RecordedProtocol { nativeFdm, cigi };
+// The first of the two whose packets a capture has; of CIGI a host's count, not an image generator's.
+Result<RecordedProtocol> protocolOf(std::span<const std::byte> file);
+// The packets of the protocol in a capture, good and bad, of the one address and port to which the first of them went.
+Result<std::vector<RecordedPacket>> parsePcapPackets(std::span<const std::byte> file, RecordedProtocol protocol);
 
 // Reads a file of at most kMaxTrackFileBytes.
 Result<std::vector<std::byte>> readTrackFile(const std::string& path);

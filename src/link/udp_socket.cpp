@@ -35,11 +35,30 @@ Result<int> newSocket() {
   return fd;
 }
 
+sockaddr_in addressOf(const Peer& peer) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(peer.address);
+  address.sin_port = htons(peer.port);
+  return address;
+}
+
 const sockaddr* asSockaddr(const sockaddr_in& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
 
 }  // namespace
+
+Result<Peer> resolvePeer(const Endpoint& endpoint) {
+  const auto address = resolve(endpoint);
+  if (!address) return tl::unexpected(address.error());
+  return Peer{ntohl(address->sin_addr.s_addr), endpoint.port};
+}
+
+std::string toText(const Peer& peer) {
+  return fmt::format("{}.{}.{}.{}:{}", peer.address >> 24, peer.address >> 16 & 0xff, peer.address >> 8 & 0xff,
+                     peer.address & 0xff, peer.port);
+}
 
 Result<UdpSocket> UdpSocket::listenOn(const Endpoint& endpoint) {
   const auto address = resolve(endpoint);
@@ -99,6 +118,21 @@ std::optional<std::span<const std::byte>> UdpSocket::receive(std::span<std::byte
   const ssize_t bytes = recv(fd_, buffer.data(), buffer.size(), 0);
   if (bytes < 0) return std::nullopt;
   return buffer.first(static_cast<size_t>(bytes));
+}
+
+std::optional<std::span<const std::byte>> UdpSocket::receiveFrom(std::span<std::byte> buffer, Peer& sender) const {
+  sockaddr_in address{};
+  socklen_t length = sizeof(address);
+  const ssize_t bytes = recvfrom(fd_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&address), &length);
+  if (bytes < 0) return std::nullopt;
+  sender = {ntohl(address.sin_addr.s_addr), ntohs(address.sin_port)};
+  return buffer.first(static_cast<size_t>(bytes));
+}
+
+bool UdpSocket::sendTo(std::span<const std::byte> payload, const Peer& receiver) const {
+  const sockaddr_in address = addressOf(receiver);
+  return sendto(fd_, payload.data(), payload.size(), MSG_NOSIGNAL | MSG_DONTWAIT, asSockaddr(address),
+                sizeof(address)) == static_cast<ssize_t>(payload.size());
 }
 
 SendOutcome UdpSocket::send(std::span<const std::byte> payload) const {

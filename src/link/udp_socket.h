@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -14,6 +15,15 @@ namespace eye {
 
 // The largest payload that a UDP datagram over IPv4 can have.
 inline constexpr size_t kMaxDatagramBytes = 65507;
+
+// Who sends or receives: an IPv4 address and a port, both in the machine's byte order.
+struct Peer {
+  uint32_t address = 0;
+  uint16_t port = 0;
+  bool operator==(const Peer&) const = default;
+};
+Result<Peer> resolvePeer(const Endpoint& endpoint);
+std::string toText(const Peer& peer);  // "127.0.0.1:8000"
 
 enum class SendOutcome {
   sent,
@@ -36,7 +46,10 @@ class UdpSocket {
   // The next datagram that has already arrived, or nothing. The span points into `buffer`, which should hold
   // kMaxDatagramBytes: what does not fit is lost.
   std::optional<std::span<const std::byte>> receive(std::span<std::byte> buffer) const;
-  SendOutcome send(std::span<const std::byte> payload) const;
+  std::optional<std::span<const std::byte>> receiveFrom(std::span<std::byte> buffer, Peer& sender) const;
+  SendOutcome send(std::span<const std::byte> payload) const;  // of a connected socket
+  // Of a listening socket, any thread. Never blocks: false when the network does not take it.
+  bool sendTo(std::span<const std::byte> payload, const Peer& receiver) const;
   uint16_t port() const;  // the local one
 
  private:

@@ -11,6 +11,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (const CapturedDatagram& datagram : capture->datagrams) payload += datagram.payload.size();
   EYE_CHECK(payload <= size);
   if (const auto track = parsePcapTrack(file)) track->at(track->durationS() / 2);
-  (void)parsePcapPackets(file);
+  (void)parsePcapPackets(file, RecordedProtocol::nativeFdm);
+  (void)parsePcapPackets(file, RecordedProtocol::cigi);
   return 0;
 }

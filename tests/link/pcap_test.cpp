@@ -113,7 +113,7 @@ TEST_CASE("a capture's track is the first stream's, in order, bad packets left o
   CHECK(track->durationS() == Approx(2));
   CHECK(track->at(0.5).position.altM == 150);
   // To be sent again, nothing is left out but the other aircraft.
-  const auto packets = parsePcapPackets(writer.bytes);
+  const auto packets = parsePcapPackets(writer.bytes, RecordedProtocol::nativeFdm);
   REQUIRE(packets);
   REQUIRE(packets->size() == 5);
   CHECK((*packets)[2].timeS == Approx(0.5));
@@ -135,7 +135,7 @@ TEST_CASE("damaged captures never crash") {
       if (at < file.size()) file[at] = static_cast<std::byte>(random() & 0xff);
     }
     if (const auto track = parsePcapTrack(file)) ++read;
-    (void)parsePcapPackets(file);
+    (void)parsePcapPackets(file, RecordedProtocol::nativeFdm);
   }
   CHECK(read > 5'000);
 }

@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 
+#include "link/cigi_host.h"
 #include "link/scenario.h"
 #include "link/sender.h"
 #include "link/state_source.h"
@@ -16,7 +18,8 @@ namespace {
 using namespace eye;
 
 struct Arguments {
-  std::string protocol, to, track, scenario, pose, logLevel = "info";
+  std::string protocol, to, track, scenario, pose, cigiVersion = "3.3", logLevel = "info";
+  bool synchronous = false;
   double rateHz = 60;
   SendOptions send;
 };
@@ -40,7 +43,9 @@ std::string scenarioNames() {
 }
 
 void declareOptions(CLI::App& app, Arguments& args) {
-  app.add_option("--protocol", args.protocol, "What to speak: native-fdm")->type_name("NAME")->required();
+  app.add_option("--protocol", args.protocol, "What to speak: native-fdm or cigi")->type_name("NAME")->required();
+  app.add_option("--cigi-version", args.cigiVersion, "Of CIGI: 3.3 or 4.0")->type_name("V")->capture_default_str();
+  app.add_flag("--synchronous", args.synchronous, "CIGI: one message for each Start of Frame instead of --rate");
   app.add_option("--to", args.to, "Where to send")->type_name("ADDR:PORT")->required();
   auto* what = app.add_option_group("What to fly (one of)");
   what->add_option("--track", args.track, "Recording: CSV, IGC, or a pcap, which is sent packet by packet as recorded")
@@ -65,12 +70,26 @@ void declareOptions(CLI::App& app, Arguments& args) {
       "Examples:\n"
       "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --scenario low-level --loop\n"
       "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --track flight.pcap\n"
+      "  eyepoint-host --protocol cigi --cigi-version 4.0 --to 127.0.0.1:8000 --scenario orbit --synchronous\n"
       "  eyepoint-host --protocol native-fdm --to 10.0.0.2:5550 --track glider.igc --jitter 20 --loss 0.01");
 }
 
+bool speaksCigi(const Arguments& args) {
+  return args.protocol == "cigi";
+}
+
+cigi::Version versionOf(const Arguments& args) {
+  return args.cigiVersion == "4.0" ? cigi::Version{4, 0} : cigi::Version{3, 3};
+}
+
 Result<void> check(const Arguments& args) {
-  if (args.protocol != "native-fdm")
-    return fail(ErrorKind::usage, fmt::format("--protocol '{}' is not spoken; there is: native-fdm", args.protocol));
+  if (args.protocol != "native-fdm" && !speaksCigi(args))
+    return fail(ErrorKind::usage,
+                fmt::format("--protocol '{}' is not spoken; there are: native-fdm, cigi", args.protocol));
+  if (args.cigiVersion != "3.3" && args.cigiVersion != "4.0")
+    return fail(ErrorKind::usage, fmt::format("--cigi-version '{}' is neither 3.3 nor 4.0", args.cigiVersion));
+  if (args.synchronous && !speaksCigi(args))
+    return fail(ErrorKind::usage, "--synchronous needs --protocol cigi: native-fdm has no answers to wait for");
   if (!(args.rateHz >= 0.1 && args.rateHz <= 10'000))
     return fail(ErrorKind::usage, fmt::format("--rate {} is outside 0.1 to 10000 Hz", args.rateHz));
   if (args.send.durationS && !(*args.send.durationS > 0 && *args.send.durationS <= 1e7))
@@ -78,66 +97,131 @@ Result<void> check(const Arguments& args) {
   return checkBadLink(args.send.badLink);
 }
 
-Result<PacketSource> sourceOf(const Arguments& args) {
-  if (!args.scenario.empty()) {
-    const auto scenario = findScenario(args.scenario);
-    if (!scenario) return tl::unexpected(scenario.error());
-    return packetsFromPoses(scenario->poseAt, scenario->durationS, args.rateHz);
-  }
-  if (!args.pose.empty()) {
-    const auto pose = parsePose(args.pose);
-    if (!pose) return tl::unexpected(pose.error());
-    return packetsFromPoses([pose = *pose](double) { return pose; }, 0, args.rateHz);
-  }
+// What is flown: a function of time, or a capture of the protocol itself, whose packets go out as they were recorded.
+struct Flight {
+  std::function<Pose(double timeS)> poseAt;
+  double durationS = 0;
+  std::vector<RecordedPacket> packets;
+};
+
+Result<Flight> recordedFlight(const Arguments& args) {
   const auto bytes = readTrackFile(args.track);
   if (!bytes) return tl::unexpected(bytes.error());
   if (isCapture(*bytes)) {
-    auto packets = parsePcapPackets(*bytes);
-    if (!packets) return fail(packets.error().kind, fmt::format("track '{}': {}", args.track, packets.error().message));
-    return packetsFromRecording(std::move(*packets));
+    const auto spoken = speaksCigi(args) ? RecordedProtocol::cigi : RecordedProtocol::nativeFdm;
+    const auto protocol = protocolOf(*bytes);
+    if (!protocol)
+      return fail(protocol.error().kind, fmt::format("track '{}': {}", args.track, protocol.error().message));
+    if (*protocol == spoken && !args.synchronous) {
+      auto packets = parsePcapPackets(*bytes, spoken);
+      if (!packets)
+        return fail(packets.error().kind, fmt::format("track '{}': {}", args.track, packets.error().message));
+      return Flight{{}, 0, std::move(*packets)};
+    }
   }
   auto track = loadTrack(args.track);
   if (!track) return tl::unexpected(track.error());
   const double durationS = track->durationS();
-  return packetsFromPoses([track = std::move(*track)](double t) { return track.at(t); }, durationS, args.rateHz);
+  return Flight{[track = std::move(*track)](double t) { return track.at(t); }, durationS, {}};
+}
+
+Result<Flight> flightOf(const Arguments& args) {
+  if (!args.scenario.empty()) {
+    const auto scenario = findScenario(args.scenario);
+    if (!scenario) return tl::unexpected(scenario.error());
+    return Flight{scenario->poseAt, scenario->durationS, {}};
+  }
+  if (args.pose.empty()) return recordedFlight(args);
+  const auto pose = parsePose(args.pose);
+  if (!pose) return tl::unexpected(pose.error());
+  return Flight{[pose = *pose](double) { return pose; }, 0, {}};
+}
+
+std::string textOf(cigi::IgMode mode) {
+  constexpr const char* kNames[] = {"standby", "operate", "debug", "maintenance"};
+  return kNames[static_cast<size_t>(mode)];
 }
 
 // One line a second, and what to do when nobody hears.
 class Ticker {
  public:
-  explicit Ticker(std::string to) : to_(std::move(to)) {}
+  Ticker(std::string to, const cigi::ReplyListener* replies) : to_(std::move(to)), replies_(replies) {}
   void operator()(const SendReport& report) {
-    const double rateHz = static_cast<double>(report.datagrams - datagrams_) / (report.elapsedS - elapsedS_);
+    const double sinceS = report.elapsedS - elapsedS_;
+    const double rateHz = static_cast<double>(report.datagrams - datagrams_) / sinceS;
     datagrams_ = report.datagrams, elapsedS_ = report.elapsedS;
     std::string position = "nothing sent yet";
     if (const auto& pose = report.pose)
       position =
           fmt::format("{:.6f} {:.6f} {:.1f} m, heading {:.1f} pitch {:.1f} roll {:.1f}", pose->position.latDeg,
                       pose->position.lonDeg, pose->position.altM, pose->headingDeg, pose->pitchDeg, pose->rollDeg);
-    spdlog::info("{:6.1f} s, {} packets, {:.1f} Hz, {}{}", report.elapsedS, report.datagrams, rateHz, position,
-                 report.nobodyListens ? fmt::format(" (nobody listens at {} yet)", to_) : "");
+    spdlog::info("{:6.1f} s, {} packets, {:.1f} Hz, {}{}{}", report.elapsedS, report.datagrams, rateHz, position,
+                 report.nobodyListens ? fmt::format(" (nobody listens at {} yet)", to_) : "", answers(sinceS));
   }
 
  private:
+  std::string answers(double sinceS) {
+    if (replies_ == nullptr) return "";
+    const cigi::HeardReplies heard = replies_->heard();
+    const double rateHz = static_cast<double>(heard.starts - starts_) / sinceS;
+    starts_ = heard.starts;
+    if (heard.starts == 0) return "; no Start of Frame yet";
+    const cigi::StartOfFrame& start = heard.newest;
+    return fmt::format("; Start of Frame {:.1f} Hz, frame {}, mode {}, database {}{}{}", rateHz, start.igFrame,
+                       textOf(start.mode), start.databaseNumber, start.overframing ? ", overframing" : "",
+                       start.paging ? ", paging" : "");
+  }
+
   std::string to_;
-  uint64_t datagrams_ = 0;
+  const cigi::ReplyListener* replies_;
+  uint64_t datagrams_ = 0, starts_ = 0;
   double elapsedS_ = 0;
 };
+
+SendReport send(const Arguments& args, Flight flight, const UdpSocket& socket, cigi::ReplyListener* replies) {
+  Ticker ticker(args.to, replies);
+  if (!flight.packets.empty())
+    return sendPackets(packetsFromRecording(std::move(flight.packets)), socket, args.send, stopAsked, ticker);
+  if (!speaksCigi(args))
+    return sendPackets(packetsFromPoses(flight.poseAt, flight.durationS, args.rateHz), socket, args.send, stopAsked,
+                       ticker);
+  const auto igFrame = [replies] { return replies->igFrame(); };
+  if (!args.synchronous)
+    return sendPackets(cigiPacketsFromPoses(flight.poseAt, flight.durationS, args.rateHz, versionOf(args), igFrame),
+                       socket, args.send, stopAsked, ticker);
+  uint32_t number = 0;
+  const auto packetAt = [&](double timeS) -> std::optional<std::vector<std::byte>> {
+    if (timeS > flight.durationS && !args.send.loop) return std::nullopt;
+    const double atS = flight.durationS > 0 ? std::fmod(timeS, flight.durationS) : 0;
+    return cigi::hostMessage(versionOf(args), {number++, igFrame(), timeS, flight.poseAt(atS)});
+  };
+  const auto awaitDemand = [replies](int timeoutMs) { return replies->awaitStart(timeoutMs); };
+  return sendOnDemand({packetAt, awaitDemand}, socket, args.send, stopAsked, ticker);
+}
 
 int fly(Arguments args) {
   if (const auto ok = check(args); !ok) return complain(ok.error());
   const auto endpoint = parseEndpoint(args.to, kLoopbackAddress, "--to");
   if (!endpoint) return complain(endpoint.error());
-  const auto source = sourceOf(args);
-  if (!source) return complain(source.error());
+  auto flight = flightOf(args);
+  if (!flight) return complain(flight.error());
   const auto socket = UdpSocket::connectTo(*endpoint);
   if (!socket) return complain(socket.error());
+  std::optional<cigi::ReplyListener> replies;
+  if (speaksCigi(args)) replies.emplace(*socket);
 
   if (!args.pose.empty()) args.send.loop = true;  // one pose is a round of one packet
-  spdlog::info("sending native-fdm to {}:{}", endpoint->address, endpoint->port);
-  const SendReport report = sendPackets(*source, *socket, args.send, stopAsked, Ticker(args.to));
+  spdlog::info("sending {} to {}:{}", args.protocol, endpoint->address, endpoint->port);
+  const SendReport report = send(args, std::move(*flight), *socket, replies ? &*replies : nullptr);
   spdlog::info("{} packets in {:.2f} s: {} datagrams sent, {} lost on purpose, {} duplicated, {} failed",
                report.packets, report.elapsedS, report.datagrams, report.lost, report.duplicated, report.failed);
+  if (replies) {
+    const cigi::HeardReplies heard = replies->heard();
+    spdlog::info(
+        "{} Starts of Frame, {} overframing, {} paging; {} answers of height, {} of line of sight; {} datagrams not "
+        "understood",
+        heard.starts, heard.overframings, heard.pagings, heard.heights, heard.sights, heard.notUnderstood);
+  }
   if (report.failed == 0) return 0;
   return complain({ErrorKind::io, fmt::format("{} datagrams could not be sent to {}; check the network and the address",
                                               report.failed, args.to)});

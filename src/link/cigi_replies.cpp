@@ -1,0 +1,56 @@
+#include "link/cigi_replies.h"
+
+namespace eye::cigi {
+namespace {
+
+// A host that has gone is not written to for ever, nor is who never asked and whose address another has forged.
+constexpr int64_t kRepliesEndNs = 5'000'000'000;
+constexpr int8_t kNotAvailable = -128;
+
+}  // namespace
+
+void Replies::heard(const Peer& host, const Format& format, const IgControl& control, int64_t nowNs) {
+  const std::lock_guard lock(mutex_);
+  if (host_ != host) answers_.clear();  // of another's questions
+  host_ = host;
+  heardNs_ = nowNs;
+  format_ = format;
+  control_ = control;
+  // A host asks for a database by its number, and then for 0 or again for the same.
+  if (control.mode == IgMode::standby || control.databaseNumber <= 0) return;
+  if (control.databaseNumber != wantedDatabase_) loaded_ = false;
+  wantedDatabase_ = control.databaseNumber;
+}
+
+bool Replies::answer(const Packet& packet) {
+  const std::lock_guard lock(mutex_);
+  if (answers_.size() == kMaxAnswers) return false;
+  answers_.push_back(packet);
+  return true;
+}
+
+int8_t Replies::databaseStatus(const FrameReport& report) {
+  if (wantedDatabase_ == 0) return databaseNumber_.value_or(0);
+  if (databaseNumber_ && wantedDatabase_ != *databaseNumber_) return kNotAvailable;
+  loaded_ = loaded_ || !report.pagingBehind;
+  return static_cast<int8_t>(loaded_ ? wantedDatabase_ : -wantedDatabase_);
+}
+
+std::optional<Replies::Reply> Replies::frame(const FrameReport& report, int64_t nowNs) {
+  const std::lock_guard lock(mutex_);
+  StartOfFrame start;
+  start.igFrame = igFrame_++;
+  start.databaseNumber = databaseStatus(report);
+  start.mode = control_.mode;
+  start.ticks = static_cast<uint32_t>(nowNs / 10'000);
+  start.hostFrame = control_.hostFrame;
+  start.overframing = report.overBudget;
+  start.paging = report.pagingBehind;
+  const bool speaks = host_ && nowNs - heardNs_ <= kRepliesEndNs;
+  if (!fixedReceiver_ && !speaks) return std::nullopt;
+  Builder builder(format_, start);
+  while (!answers_.empty() && builder.add(answers_.front())) answers_.pop_front();
+  return Reply{fixedReceiver_ ? *fixedReceiver_ : *host_, builder.take()};
+}
+
+}  // namespace eye::cigi

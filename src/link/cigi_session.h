@@ -1,0 +1,95 @@
+// What a CIGI host has said so far, for one view: entities, view, sky and air. Messages in, a snapshot for the frame
+// out. Owner thread: link.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "link/air.h"
+#include "link/cigi.h"
+#include "link/cigi_entities.h"
+#include "link/ground_probe.h"
+#include "link/view_edges.h"
+
+namespace eye::cigi {
+
+// The sky's clock.
+struct Sky {
+  std::optional<double> julianDayUtc;  // at the moment `atNs`
+  bool clockRuns = false;
+  int64_t atNs = 0;
+};
+
+struct Snapshot {
+  EyeChain eye;
+  int64_t arrivedNs = 0;  // of the newest message
+  ViewEdges edges;
+  Sky sky;
+  Air air;
+};
+
+// When the sky stands, whole seconds: the sun moves 0.004 degrees in one, and a picture that does not change need not
+// be drawn again.
+std::optional<double> julianDayAt(const Sky& sky, int64_t nowNs);
+
+class Session {
+ public:
+  explicit Session(uint16_t viewId) : viewId_(viewId) {}
+
+  // `name`: of the link, for remarks in the log.
+  void take(const Message& message, int64_t nowNs, const std::string& name);
+  // Forgets everything but what is counted: for a new host.
+  void reset();
+
+  Snapshot snapshot() const;
+  const IgControl& control() const { return control_; }  // the newest
+  uint64_t lostFrames() const { return lostFrames_; }
+  uint64_t turnedAway() const { return entities_.turnedAway(); }
+  // What is to be answered now: questions of this moment's message, and those that repeat. Points are geodetic.
+  std::vector<GroundQuestion> takeQuestions();
+
+ private:
+  void header(const IgControl& control, const std::string& name);
+  void packet(const Packet& packet, const Stamp& stamp, const std::string& name);
+  void take(const ViewControl& control, const Stamp& stamp);
+  void take(const ViewDefinition& definition, const std::string& name);
+  void take(const CelestialSphere& sphere, int64_t nowNs);
+  void take(const Weather& weather);
+  // cigi_questions.cpp
+  void ask(const GroundRequest& request, const Stamp& stamp);
+  void repeatQuestions(int64_t nowNs);
+  GroundQuestion resolved(const GroundRequest& request, uint32_t hostFrame, int64_t nowNs) const;
+  std::optional<Placed> entityPlace(uint16_t id, int64_t nowNs) const;
+  std::optional<Vec3d> ecefOf(const Point& point, uint16_t entityId, int64_t nowNs) const;
+  // What a host is told once in the log.
+  enum class Remark { standby, tooMany, clamp, otherView, mirror, orthographic };
+  void remark(const std::string& name, Remark remark, const std::string& text);
+
+  const uint16_t viewId_;
+  EntityTable entities_;
+  IgControl control_;
+  bool started_ = false;
+  uint64_t lostFrames_ = 0;
+  int64_t arrivedNs_ = 0;
+
+  uint8_t groupId_ = 0;  // of the view; 0: none
+  uint16_t eyeEntityId_ = 0;
+  Vec3d eyeOffsetM_{};
+  double eyeYawDeg_ = 0, eyePitchDeg_ = 0, eyeRollDeg_ = 0;
+  uint32_t viewFrame_ = 0;
+  bool viewTold_ = false;
+  ViewEdges edges_;
+  Sky sky_;
+  Air air_;
+
+  struct Repeating {
+    GroundRequest request;
+    uint8_t everyFrames;
+    uint32_t answeredFrame;  // of the host
+  };
+  std::vector<Repeating> repeating_;
+  std::vector<GroundQuestion> questions_;
+  std::set<Remark> remarks_;  // said already
+};
+
+}  // namespace eye::cigi

@@ -1,0 +1,36 @@
+// The thread named "ground": answers a host's questions about the ground in their order, so that reading terrain from
+// disk keeps neither packets nor frames waiting.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+
+#include "link/cigi_replies.h"
+#include "link/ground_probe.h"
+
+namespace eye::cigi {
+
+class GroundDesk {
+ public:
+  // The replies must live longer. The thread begins with the first question; without `openProbe`, and where it fails,
+  // every answer is "not valid".
+  GroundDesk(Replies& replies, OpenProbe openProbe, std::string name);
+  ~GroundDesk();
+  // Link thread. What is too much to be answered in time is dropped.
+  void ask(std::vector<GroundQuestion> questions);
+
+ private:
+  void run(const std::stop_token& stop);
+
+  Replies& replies_;
+  const OpenProbe openProbe_;
+  const std::string name_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::deque<GroundQuestion> waiting_;
+  std::jthread thread_;
+};
+
+}  // namespace eye::cigi

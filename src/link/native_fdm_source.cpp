@@ -1,0 +1,68 @@
+// native-fdm://ADDR:PORT: the newest packet's state, as it came.
+#include "link/host_url.h"
+#include "link/link_thread.h"
+#include "link/live_sources.h"
+#include "link/native_fdm.h"
+
+namespace eye {
+namespace {
+
+struct Arrived {
+  NativeFdmState state;
+  int64_t arrivedNs = 0;
+};
+
+class NativeFdmSource final : public StateSource, private LinkProtocol {
+ public:
+  NativeFdmSource(UdpSocket socket, AllowList allowed, const std::string& url)
+      : socket_(std::move(socket)), allowed_(std::move(allowed)), thread_(socket_, *this, url) {}
+
+  SourceSample sample(double) override {
+    const auto newest = mailbox_.take();
+    SourceSample sample;
+    sample.live = true;
+    sample.counts = newest.counts;
+    if (!newest.state) return sample;
+    sample.valid = true;
+    sample.pose = newest.state->state.pose;
+    sample.visibilityM = newest.state->state.visibilityM;
+    sample.arrivedNs = newest.state->arrivedNs;
+    return sample;
+  }
+  bool isLive() const override { return true; }
+  bool isFixed() const override { return false; }
+
+ private:
+  Result<void> take(std::span<const std::byte> datagram, const Peer& sender, int64_t nowNs) override {
+    if (!allowed_.allows(sender)) return notAllowed(sender);
+    const auto state = parseNativeFdm(datagram);
+    if (!state) return tl::unexpected(state.error());
+    // The packet's clock stays unused: whole seconds in FlightGear, a constant or ticks in JSBSim.
+    newest_ = Arrived{*state, nowNs};
+    return {};
+  }
+  void publish(const HostCounts& counts, int64_t) override { mailbox_.put(newest_, counts); }
+
+  UdpSocket socket_;
+  const AllowList allowed_;
+  std::optional<Arrived> newest_;  // the link thread's
+  Mailbox<Arrived> mailbox_;
+  LinkThread thread_;  // last: it uses the others
+};
+
+}  // namespace
+
+OpenedSource openNativeFdm(const std::string& url, const std::string& rest) {
+  constexpr const char* kOptions[] = {"allow"};
+  const auto parsed = parseHostUrl(url, rest, kOptions);
+  if (!parsed) return tl::unexpected(parsed.error());
+  const auto endpoint = parseEndpoint(parsed->place, kLoopbackAddress, url);
+  if (!endpoint) return tl::unexpected(endpoint.error());
+  auto allowed = AllowList::of(*parsed);
+  if (!allowed) return tl::unexpected(allowed.error());
+  auto socket = UdpSocket::listenOn(*endpoint);
+  if (!socket) return fail(socket.error().kind, url + ": " + socket.error().message);
+  return std::make_unique<NativeFdmSource>(std::move(*socket), std::move(*allowed), url);
+}
+
+}  // namespace eye
