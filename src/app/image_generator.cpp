@@ -205,7 +205,9 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   if (host.valid) hostPose_ = host.pose;
   finished_ = host.finished;
   const double nowS = sources_.anyLive() ? static_cast<double>(beganNs) * 1e-9 : timeS;
-  tracker_.observe(host, hostPose_, nowS);
+  SourceSample observed = host;
+  if (host.carriedToNs != 0) observed.arrivedNs = host.carriedToNs;  // the moment that the pose is of
+  tracker_.observe(observed, hostPose_, nowS);
   const DisplayedEye eye = tracker_.eye();
   pose_ = eye.pose;
   view_ = currentView(pose_, host.edges);

@@ -46,6 +46,7 @@ class CigiSource final : public StateSource, private LinkProtocol {
     if (!pose) return sample;
     sample.valid = true;
     sample.pose = *pose;
+    sample.carriedToNs = carriedTo(state.eye, nowNs).value_or(0);
     sample.visibilityM = visibilityAt(state.air, pose->position.altM);
     return sample;
   }

@@ -49,6 +49,7 @@ class DisSource final : public StateSource, private LinkProtocol {
     sample.arrivedNs = newest.state->arrivedNs;
     const int64_t sinceNs = std::min(monotonicNs() - sample.arrivedNs, kTimeOutNs);
     sample.pose = deadReckoned(newest.state->state, static_cast<double>(sinceNs) * 1e-9);
+    if (newest.state->state.deadReckoning > DeadReckoning::hold) sample.carriedToNs = sample.arrivedNs + sinceNs;
     return sample;
   }
   bool isLive() const override { return true; }

@@ -106,6 +106,13 @@ std::optional<Placed> placeOf(const EyeChain& chain, int64_t nowNs) {
   return placed;
 }
 
+std::optional<int64_t> carriedTo(const EyeChain& chain, int64_t nowNs) {
+  const auto end = chain.links.begin() + static_cast<std::ptrdiff_t>(chain.count);
+  const bool moves =
+      std::any_of(chain.links.begin(), end, [](const ChainLink& link) { return link.carriedOn && link.motion.any(); });
+  return moves ? std::optional(std::min(nowNs, chain.untilNs)) : std::nullopt;
+}
+
 std::optional<Pose> poseOf(const EyeChain& chain, int64_t nowNs) {
   if (chain.count == 1) {
     const ChainLink root = atMoment(chain, chain.links[0], nowNs);

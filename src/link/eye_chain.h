@@ -51,6 +51,8 @@ struct Placed {
 };
 // Where the chain's last body is. `nowNs`: a clock with that of the links.
 std::optional<Placed> placeOf(const EyeChain& chain, int64_t nowNs);
+// The moment that the chain's pose at `nowNs` is of, where something in it moves on by itself.
+std::optional<int64_t> carriedTo(const EyeChain& chain, int64_t nowNs);
 // The same as a pose. A chain of one link at its own moment comes back as it was given.
 std::optional<Pose> poseOf(const EyeChain& chain, int64_t nowNs);
 

@@ -20,6 +20,7 @@ struct SourceSample {
   std::optional<double> julianDayUtc;  // that the host's sky shows
   ViewEdges edges;                     // what the host has said of the view
   int64_t arrivedNs = 0;               // of the newest packet; 0 without a live host
+  int64_t carriedToNs = 0;             // where the source carries the pose on by the host's rates: to this moment
   bool live = false;                   // fed by packets
   bool valid = false;                  // false until the first packet of a live host
   bool finished = false;               // a recording or scenario is over (it holds its last pose)

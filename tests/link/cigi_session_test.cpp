@@ -246,6 +246,7 @@ TEST_CASE(
   velocity.yMS = 200, velocity.yawDegS = 3;
   host.says({entityAt(0, start), velocity});
   CHECK(host.pose(0.1) == start);  // told in this frame: shown as told
+  CHECK_FALSE(carriedTo(host.session.snapshot().eye, host.nowNs + kSecond));
   for (int i = 0; i < 600; ++i) host.nowNs += kSecond / 60, host.says({});
   const auto after = host.pose();
   REQUIRE(after);
@@ -255,6 +256,7 @@ TEST_CASE(
   // Silent: a few lost datagrams' worth, then it stands.
   CHECK(metresBetween(*host.pose(0.1), *after) == Approx(20).margin(0.1));
   CHECK(host.pose(5) == host.pose(0.2));
+  CHECK(carriedTo(host.session.snapshot().eye, host.nowNs + 5 * kSecond) == host.nowNs + kSecond / 5);
   // In the body's axes, with an acceleration, and smoothing by the host's leave.
   Host smooth;
   smooth.smoothing = true;
