@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "app/draw_list.h"
+#include "app/terrain_probe.h"
 #include "geo/sun.h"
 #include "telemetry/trace.h"
 
@@ -40,10 +41,10 @@ bool operator==(const View& a, const View& b) {
 
 }  // namespace
 
-Result<Sources> Sources::open(const std::vector<std::string>& urls) {
+Result<Sources> Sources::open(const std::vector<std::string>& urls, const OpenProbe& openProbe) {
   Sources sources;
   for (const std::string& url : urls.empty() ? std::vector<std::string>{"demo://"} : urls) {
-    Result<std::unique_ptr<StateSource>> source = openStateSource(url);
+    Result<std::unique_ptr<StateSource>> source = openStateSource(url, openProbe);
     if (!source) return tl::unexpected(source.error());
     sources.sources_.push_back(std::move(*source));
     sources.description_ += (sources.description_.empty() ? "" : ", ") + url;
@@ -90,10 +91,6 @@ bool Sources::allFixed() const {
 Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& options,
                                                                std::unique_ptr<StateSource> source) {
   auto made = std::unique_ptr<ImageGenerator>(new ImageGenerator(options));
-  Result<Sources> sources = source != nullptr ? Sources::of(std::move(source)) : Sources::open(options.hosts);
-  if (!sources) return tl::unexpected(sources.error());
-  made->sources_ = std::move(*sources);
-
   Result<DepthMapControl> depthMap = DepthMapControl::create(options);
   if (!depthMap) return tl::unexpected(depthMap.error());
   made->depthMap_ = std::move(*depthMap);
@@ -108,6 +105,11 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
                             terrain, terrain));
   const Result<DatabaseReader> database = DatabaseReader::open(terrain);
   if (!database) return tl::unexpected(database.error());
+  const OpenProbe openProbe = [terrain] { return openTerrainProbe(terrain); };
+  Result<Sources> sources =
+      source != nullptr ? Sources::of(std::move(source)) : Sources::open(options.hosts, openProbe);
+  if (!sources) return tl::unexpected(sources.error());
+  made->sources_ = std::move(*sources);
 
   RendererOptions rendererOptions;
   rendererOptions.widthPx = options.widthPx;

@@ -19,7 +19,7 @@ namespace eye {
 // Several hosts: the one that spoke last gives the state; before any has spoken, the first that needs no packets.
 class Sources {
  public:
-  static Result<Sources> open(const std::vector<std::string>& urls);
+  static Result<Sources> open(const std::vector<std::string>& urls, const OpenProbe& openProbe);
   static Sources of(std::unique_ptr<StateSource> source);
   SourceSample sample(double timeS);
   void frameDone(const FrameReport& report);
