@@ -40,12 +40,15 @@ void Session::reset() {
   questions_.clear();
   started_ = false;
   control_ = {};
+  seen_.fill(std::nullopt);
 }
 
 void Session::header(const IgControl& control, const std::string& name) {
   const uint32_t gap = control.hostFrame - control_.hostFrame;
   if (started_ && isLate(control.hostFrame, control_.hostFrame)) {
-    if (lostFrames_ > 0) --lostFrames_;  // overtaken, not lost
+    // Overtaken, not lost; unless it has come before.
+    if (lostFrames_ > 0 && seen_[control.hostFrame % seen_.size()] != control.hostFrame) --lostFrames_;
+    seen_[control.hostFrame % seen_.size()] = control.hostFrame;
     return;
   }
   if (started_ && gap > 1 && gap <= kMaxGap) lostFrames_ += gap - 1;
@@ -59,6 +62,7 @@ void Session::header(const IgControl& control, const std::string& name) {
     remark(name, Remark::standby, "the host keeps the image generator in standby: it is obeyed from operate on");
   }
   control_ = control;
+  seen_[control.hostFrame % seen_.size()] = control.hostFrame;
   started_ = true;
 }
 

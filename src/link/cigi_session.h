@@ -70,6 +70,7 @@ class Session {
   IgControl control_;
   bool started_ = false;
   uint64_t lostFrames_ = 0;
+  std::array<std::optional<uint32_t>, 128> seen_;  // host frames by their last bits: more than can be late
   int64_t arrivedNs_ = 0;
 
   uint8_t groupId_ = 0;  // of the view; 0: none

@@ -284,6 +284,9 @@ TEST_CASE("session: lost, overtaken and repeated frames; a host that begins anew
   host.says({at(103)});
   CHECK(host.session.lostFrames() == 3);
   CHECK(host.pose()->position.altM == 105);
+  host.frame = 3;
+  host.says({at(103)});  // once more
+  CHECK(host.session.lostFrames() == 3);
   host.frame = 5;
   host.says({at(106)});  // one frame in two datagrams
   CHECK(host.session.lostFrames() == 3);
