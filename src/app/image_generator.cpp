@@ -207,10 +207,11 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   if (host.valid) hostPose_ = host.pose;
   finished_ = host.finished;
   const double nowS = sources_.anyLive() ? static_cast<double>(beganNs) * 1e-9 : timeS;
+  const bool heard = host.valid || !sources_.anyLive();  // until then the eye waits over the terrain's middle
   SourceSample observed = host;
   if (host.carriedToNs != 0) observed.arrivedNs = host.carriedToNs;  // the moment that the pose is of
-  tracker_.observe(observed, hostPose_, nowS);
-  const DisplayedEye eye = tracker_.eye();
+  if (heard) tracker_.observe(observed, hostPose_, nowS);
+  const DisplayedEye eye = heard ? tracker_.eye() : DisplayedEye{.pose = hostPose_};
   pose_ = eye.pose;
   view_ = currentView(pose_, host.edges);
   const Lighting lighting = currentLighting(host);
@@ -221,7 +222,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   const bool frozen = isFrozen(debug);
   if (!frozen) {
     const LookAhead ahead = tracker_.lookAhead(view_);
-    select(&ahead);
+    select(heard ? &ahead : nullptr);
   }
 
   const bool seen = !renderer_->minimised() || readColour || readDepth;

@@ -19,6 +19,8 @@ constexpr double kFarthestExtrapolationS = 0.2;
 // Up to so much jitter the filter foresees as smoothly as it looks back (30 ms: 0.17 m of stutter at 150 m/s either
 // way), and each millisecond of delay would be one of transport delay. What is beyond it is waited for.
 constexpr double kForeseenJitterS = 0.05, kLongestDelayS = 0.1;
+// A host may say each pose several times; the same for longer is standing still.
+constexpr double kStandsStillS = 0.25;
 // Before the filter has seen so many it does not know the velocity.
 constexpr int kFewestObservations = 12;
 // Farther from the newest packet than twice what its age explains, and this, the filter is wrong.
@@ -45,61 +47,80 @@ PredictorOptions predictorOptions(const Options& options) {
 ViewpointTracker::ViewpointTracker(const Options& options) : options_(options), predictor_(predictorOptions(options)) {}
 
 void ViewpointTracker::observe(const SourceSample& host, const Pose& pose, double nowS) {
-  const Vec3d eyeEcefM = ecefFromGeodetic(pose.position);
-  const double sinceS = nowS - nowS_;
-  jumped_ = !started_;
-  if (started_ && sinceS > 0) {
-    const double speedMS = glm::length(eyeEcefM - eyeEcefM_) / sinceS;
-    jumped_ = speedMS > kFastestMS;
-    if (!jumped_) speedMS_ += kSmoothing * (speedMS - speedMS_);
-    frameRateHz_ += kSmoothing * (std::min(1 / sinceS, 1000.0) - frameRateHz_);
+  if (frames_ > 0 && nowS > nowS_) {  // the first ones count in full
+    const double rateHz = std::min(1 / (nowS - nowS_), 1000.0);
+    frameRateHz_ += std::max(kSmoothing, 1.0 / frames_) * (rateHz - frameRateHz_);
   }
-  started_ = true;
+  ++frames_;
+  nowS_ = nowS;
+  live_ = host.live && host.valid;
+  jumped_ = false;
+  if (live_ && host.arrivedNs == arrivedNs_) return;  // nothing new
+  arrivedNs_ = host.arrivedNs;
+  observePose(pose, live_ ? static_cast<double>(host.arrivedNs) * 1e-9 : nowS);
+}
+
+// `atS`: when the pose came, on the clock of the frames.
+void ViewpointTracker::observePose(const Pose& pose, double atS) {
+  const Vec3d eyeEcefM = ecefFromGeodetic(pose.position);
+  const bool first = observations_ == 0;
+  if (first || pose != pose_) changedS_ = atS;
+  jumped_ = first;
+  if (!first && atS > observedS_) {
+    const double speedMS = glm::length(eyeEcefM - eyeEcefM_) / (atS - observedS_);
+    if (speedMS < kFastestMS) speedMS_ += std::max(kSmoothing, 1.0 / observations_) * (speedMS - speedMS_);
+    if (options_.predictor == PredictorMode::none) jumped_ = speedMS >= kFastestMS;
+  }
+  ++observations_;
   pose_ = pose;
   eyeEcefM_ = eyeEcefM;
-  nowS_ = nowS;
-  while (!foreseen_.empty() && foreseen_.front().atS <= nowS) {
-    errorM_ = glm::length(foreseen_.front().ecefM - eyeEcefM);
-    foreseen_.pop_front();
-  }
-
+  observedS_ = atS;
   if (options_.predictor == PredictorMode::none) return;
-  live_ = host.live && host.valid;
-  if (host.live && host.arrivedNs == observedNs_) return;  // nothing new
-  if (live_) jitter_.observe(static_cast<double>(host.arrivedNs) * 1e-9);
-  observedNs_ = host.arrivedNs;
-  standsStill_ = pose == observed_;
-  observed_ = pose;
+
+  if (live_) jitter_.observe(atS);
   ++sinceRestart_;
-  predictor_.observe(host.live ? static_cast<double>(host.arrivedNs) * 1e-9 : nowS, pose);
-  const PredictorCounts& counts = predictor_.state().counts;
-  jumped_ = jumped_ || counts.teleports + counts.resets != restarts_;
-  restarts_ = counts.teleports + counts.resets;
-  if (jumped_) {
+  predictor_.observe(atS, pose);
+  if (const uint64_t restarts = predictor_.state().counts.restarts; restarts != restarts_) {
+    restarts_ = restarts;
+    jumped_ = true;
     sinceRestart_ = 0;
     foreseen_.clear();
     errorM_.reset();
   }
+  while (!foreseen_.empty() && foreseen_.front().atS <= atS) {
+    errorM_ = glm::length(foreseen_.front().ecefM - predictor_.at(foreseen_.front().atS).ecefM);
+    foreseen_.pop_front();
+  }
+}
+
+// Where predictions start: now, but not beyond what is believed of a host that has fallen silent.
+double ViewpointTracker::knownS() const {
+  return live_ ? std::min(nowS_, observedS_ + kFarthestExtrapolationS) : nowS_;
+}
+
+bool ViewpointTracker::isSilent() const {
+  return live_ && nowS_ - observedS_ > kFarthestExtrapolationS;
 }
 
 DisplayedEye ViewpointTracker::eye() const {
   DisplayedEye eye{pose_};
   if (!live_ || options_.hostDelay == HostDelayMode::off) return eye;
-  const double arrivedS = static_cast<double>(observedNs_) * 1e-9;
-  eye.silent = nowS_ - arrivedS > kFarthestExtrapolationS;
-  if (standsStill_ || sinceRestart_ < kFewestObservations) return eye;
+  eye.silent = isSilent();
+  if (observedS_ - changedS_ > kStandsStillS || sinceRestart_ < kFewestObservations) return eye;
   const double delayS = options_.hostDelay == HostDelayMode::fixed
                             ? options_.hostDelayMs * 1e-3
                             : std::clamp(jitter_.jitterS() - kForeseenJitterS, 0.0, kLongestDelayS);
-  const Prediction prediction = predictor_.at(std::min(nowS_ - delayS, arrivedS + kFarthestExtrapolationS));
-  const double ageS = std::abs(nowS_ - delayS - arrivedS);
+  const Prediction prediction = predictor_.at(std::min(nowS_ - delayS, knownS()));
+  const double ageS = std::abs(nowS_ - delayS - changedS_);
   const double offM = glm::length(prediction.ecefM - eyeEcefM_);
   if (!prediction.valid || offM > 2 * glm::length(prediction.velocityEcefMS) * ageS + kBelievableM) return eye;
   return {prediction.pose, delayS * 1e3, eye.silent};
 }
 
 ViewpointAhead ViewpointTracker::ahead(const Vec3d& nowForwardEcef, double inS) const {
-  const Prediction prediction = options_.predictor == PredictorMode::none ? Prediction{} : predictor_.at(nowS_ + inS);
+  // A silent host's eye waits, and nobody knows where it will go on.
+  const Prediction prediction =
+      options_.predictor == PredictorMode::none ? Prediction{} : predictor_.at(knownS() + (isSilent() ? 0 : inS));
   if (!prediction.valid) return {inS, eyeEcefM_, pose_.position.altM, 0, nowForwardEcef, 0};
   const double turnRateRadS = prediction.turnRateDegS * kRadPerDeg;
   return {inS,
@@ -126,7 +147,7 @@ LookAhead ViewpointTracker::lookAhead(const View& view) const {
 }
 
 PredictionRecord ViewpointTracker::record(double horizonS) {
-  if (options_.predictor == PredictorMode::none || horizonS <= 0) return {};
+  if (options_.predictor == PredictorMode::none || horizonS <= 0 || isSilent()) return {};
   const Prediction prediction = predictor_.at(nowS_ + horizonS);
   if (!prediction.valid) return {};
   // In the order of their times: a shorter horizon than before comes behind what is still awaited.

@@ -46,17 +46,24 @@ class ViewpointTracker {
  private:
   ViewpointAhead ahead(const Vec3d& nowForwardEcef, double inS) const;
 
+  void observePose(const Pose& pose, double atS);
+  double knownS() const;
+  bool isSilent() const;
+
   const Options& options_;
   ViewpointPredictor predictor_;
-  Pose pose_, observed_;
-  Vec3d eyeEcefM_{};
-  double nowS_ = 0, speedMS_ = 0, frameRateHz_ = 60;
-  bool started_ = false, jumped_ = false;
-  int64_t observedNs_ = 0;  // arrival of the newest packet observed
   JitterMeter jitter_;
-  bool live_ = false, standsStill_ = false;
-  int sinceRestart_ = 0;   // observations
-  uint64_t restarts_ = 0;  // of the predictor
+  double nowS_ = 0, frameRateHz_ = 60;
+  int frames_ = 0, observations_ = 0;
+  bool live_ = false, jumped_ = false;
+  // Of the newest observation.
+  Pose pose_;
+  Vec3d eyeEcefM_{};
+  int64_t arrivedNs_ = 0;
+  double observedS_ = 0, changedS_ = 0;  // when it came; when the pose was another one last
+  double speedMS_ = 0;                   // mean
+  uint64_t restarts_ = 0;                // of the predictor
+  int sinceRestart_ = 0;                 // observations
   struct Foreseen {
     double atS;
     Vec3d ecefM;

@@ -87,6 +87,8 @@ void addShape(const StudyChunk& chunk, const std::vector<ChunkCluster>& clusters
 // Takes every chunk that the pager hands over, without limit, and cuts it in all ways.
 class StudyStore final : public GpuStore {
  public:
+  bool hasRoomFor(std::span<const LoadedChunk>) override { return true; }
+  bool wouldHelp(const GpuChunk&) const override { return false; }
   explicit StudyStore(const std::vector<Method>& methods) : methods_(methods), shapes(methods.size()) {}
 
   std::optional<GpuChunk> upload(const LoadedChunk& loaded) override {

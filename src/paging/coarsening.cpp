@@ -18,14 +18,14 @@ constexpr double kAboveStarved = 1.05, kForgetting = 0.999;
 
 }  // namespace
 
-void Coarsening::steer(bool isStarved, bool isMoving, Residency& residency) {
+void Coarsening::steer(bool isStarved, bool isMoving, const Residency& residency) {
   if (isStarved) {
     starvedAt_ = factor_;
     factor_ = std::min(factor_ * kCoarser, kCoarsest);
     return;
   }
   if (factor_ <= 1) return;
-  const double spare = residency.evictableShare();
+  const double spare = residency.spareShare();
   if (spare > kPlentyShare) {
     starvedAt_ = 1;
   } else if (isMoving) {

@@ -12,7 +12,7 @@ class Coarsening {
   double factor() const { return factor_; }
   // After each exchange. `isStarved`: something seen found no room. `isMoving`: the view is another one all the time,
   // so that what did not fit may fit now.
-  void steer(bool isStarved, bool isMoving, Residency& residency);
+  void steer(bool isStarved, bool isMoving, const Residency& residency);
 
  private:
   double factor_ = 1;

@@ -22,6 +22,7 @@ constexpr uint64_t kIdleFrames = 8;
 // Of the RAM budget, kept free for results that are on their way; a group that needs more gets it when it is known.
 constexpr uint64_t kRoomShare = 4;
 // When a group is needed that is seen and missed: before anything that is not seen, however soon that may be.
+constexpr double kSoonS = 1;
 constexpr double kSeen = -std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -42,6 +43,7 @@ struct Pager::Impl {
   void trimRam();
   // What is wanted and not in RAM, from `begin` on; nothing while the GPU has no room for what is there already.
   void sendRequests(size_t begin);
+  bool isBudgetSpent() const;  // this frame's, for uploads
   int takeInWithinBudget();
   int takeInAhead();
   int takeInAll();
@@ -65,8 +67,11 @@ struct Pager::Impl {
   std::unordered_set<TileKey> asked;  // the last request list, to count what is new in it
   bool isGpuFull = false;             // an upload failed, and nothing could be evicted for it
   uint32_t fullPlan = 0;              // the plan whose look-ahead found no room
+  double fullFromS = 0;               // for what is needed then or later
   uint64_t blockedBytes = 0;
   double nowS = 0;
+  int64_t beganNs = 0;         // of this exchange's uploads
+  uint64_t uploadedBytes = 0;  // in this exchange
 
   // Kept from frame to frame so that they do not allocate.
   std::vector<Wanted> wanted;
@@ -146,45 +151,55 @@ void Pager::Impl::sendRequests(size_t begin) {
     counts.requested += static_cast<uint64_t>(parent.children().count);
   }
   pace.asked(newGroups, nowS);
-  asked.clear();
-  asked.insert(requests.begin(), requests.end());
+  if (!isGpuFull) {
+    asked.clear();
+    asked.insert(requests.begin(), requests.end());
+  }
   trimRam();
   thread.request(requests, options.ramBudgetBytes - ram.bytes());
+}
+
+bool Pager::Impl::isBudgetSpent() const {
+  const double ms = static_cast<double>(monotonicNs() - beganNs) * 1e-6;
+  return uploadedBytes >= options.uploadBytesPerFrame || ms >= options.uploadMsPerFrame;
 }
 
 // Of what is missed: at least one group, then while the budget lasts.
 int Pager::Impl::takeInWithinBudget() {
   const TraceScope trace("upload");
-  const int64_t beginNs = monotonicNs();
-  uint64_t bytes = 0;
   int taken = 0;
   for (size_t i = 0; i < missing; ++i) {
+    if (!isOpen(wanted[i].parent)) continue;
     const ChunkGroup* group = ram.use(wanted[i].parent);
     if (group == nullptr) continue;
     isGpuFull = !residency.takeIn(*group, wanted[i].neededAtS);
     if (isGpuFull) break;
     taken += static_cast<int>(group->chunks.size());
-    bytes += group->bytes();
-    const double ms = static_cast<double>(monotonicNs() - beginNs) * 1e-6;
-    if (bytes >= options.uploadBytesPerFrame || ms >= options.uploadMsPerFrame) break;
+    uploadedBytes += group->bytes();
+    if (isBudgetSpent()) break;
   }
   return taken;
 }
 
-// Of what is ahead, in frames that miss nothing: the interval's groups spread over its frames.
+// Of what is ahead, with what is left of the budget: the interval's groups spread over its frames, but at once what is
+// needed within a second.
 int Pager::Impl::takeInAhead() {
   const TraceScope trace("upload ahead");
   const int due = schedule.uploadsDue();
   int taken = 0, groups = 0;
-  for (size_t i = missing; i < wanted.size() && groups < due && fullPlan != schedule.plan(); ++i) {
-    if (!wanted[i].inMemory) continue;
+  for (size_t i = missing; i < wanted.size() && !isBudgetSpent(); ++i) {
+    if (fullPlan == schedule.plan() && wanted[i].neededAtS >= fullFromS) break;
+    if (!wanted[i].inMemory || !isOpen(wanted[i].parent)) continue;
+    if (groups >= due && wanted[i].neededAtS > nowS + kSoonS) break;
     const ChunkGroup* group = ram.use(wanted[i].parent);
     if (group == nullptr) continue;
     if (!residency.takeIn(*group, wanted[i].neededAtS)) {
       fullPlan = schedule.plan();
+      fullFromS = wanted[i].neededAtS;
       break;
     }
     taken += static_cast<int>(group->chunks.size());
+    uploadedBytes += group->bytes();
     ++groups;
   }
   schedule.uploaded(groups);
@@ -271,11 +286,13 @@ int Pager::exchange(const Selection& selection, const LookAhead* ahead) {
   // What did not fit waits, and nothing is read, until something else has fallen out of use.
   if (pager.isGpuFull && pager.missing > 0) pager.isGpuFull = !pager.residency.canEvict(kSeen);
   if (pager.missing == 0) pager.isGpuFull = false;
+  pager.beganNs = monotonicNs();
+  pager.uploadedBytes = 0;
   int taken = 0;
   if (!pager.isGpuFull) taken = pager.options.wait ? pager.takeInAll() : pager.takeInWithinBudget();
   if (looksAhead) {
     pager.listAhead();
-    if (taken == 0 && !pager.isGpuFull) taken = pager.takeInAhead();
+    if (!pager.isGpuFull) taken += pager.takeInAhead();
   }
   std::erase_if(pager.wanted, [&](const Impl::Wanted& group) { return !pager.isOpen(group.parent); });
   pager.sendRequests(0);
@@ -305,7 +322,9 @@ PagingCounts Pager::counts() const {
 PagingPace Pager::pace() const {
   const Schedule& schedule = impl_->schedule;
   if (schedule.plan() == 0) return {};
-  return {schedule.interval(), schedule.memoryS(), schedule.cacheS(), impl_->pace.rates()};
+  Interval interval = schedule.interval();
+  interval.keepsUp = interval.keepsUp && !impl_->isGpuFull && impl_->coarsening.factor() == 1;
+  return {interval, schedule.memoryS(), schedule.cacheS(), impl_->pace.rates()};
 }
 
 }  // namespace eye

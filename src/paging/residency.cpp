@@ -1,6 +1,6 @@
 #include "paging/residency.h"
 
-#include <limits>
+#include <algorithm>
 
 namespace eye {
 namespace {
@@ -36,65 +36,88 @@ void Residency::begin(const EvictionRule& rule) {
   isListed_ = false;
 }
 
-bool Residency::canEvict(double neededAtS) {
-  if (!isListed_ || next_ == evictable_.size()) {  // again at the end: parents of what has gone may be leaves now
-    cache_.evictableGroups(rule_, evictable_);
-    next_ = 0;
-    isListed_ = true;
+// Whether the group's going gives any of what is short, or opens the way to one above it that does and has fallen out
+// of use as well.
+bool Residency::helps(uint32_t parent) const {
+  const auto gives = [this](const CacheNode& member) { return gpu_.wouldHelp(member.gpu); };
+  for (;;) {
+    if (std::ranges::any_of(cache_.children(parent), gives)) return true;
+    const CacheNode& above = cache_.node(parent);
+    if (above.parent == CacheNode::kNoNode || above.usedFrame >= rule_.usedBefore) return false;
+    parent = above.parent;
   }
-  return next_ < evictable_.size() && evictable_[next_].neededAtS > neededAtS + kClearlyLaterS;
 }
 
-double Residency::evictableShare() {
-  canEvict(-std::numeric_limits<double>::infinity());
+std::optional<size_t> Residency::nextToGo(double neededAtS) {
+  // Again when something has gone: its parent may be a leaf now.
+  if (!isListed_) cache_.evictableGroups(rule_, evictable_);
+  isListed_ = true;
+  for (size_t i = 0; i < evictable_.size() && evictable_[i].neededAtS > neededAtS + kClearlyLaterS; ++i)
+    if (helps(evictable_[i].parent)) return i;
+  return std::nullopt;
+}
+
+bool Residency::canEvict(double neededAtS) {
+  return nextToGo(neededAtS).has_value();
+}
+
+double Residency::spareShare() const {
   const size_t groups = cache_.groupCount();
-  return groups == 0 ? 1 : static_cast<double>(evictable_.size() - next_) / static_cast<double>(groups);
+  return groups == 0 ? 1
+                     : static_cast<double>(cache_.groupsUnusedSince(rule_.usedBefore)) / static_cast<double>(groups);
 }
 
 bool Residency::evictOne(double neededAtS) {
-  if (!canEvict(neededAtS)) return false;
-  const uint32_t parent = evictable_[next_++].parent;
+  const std::optional<size_t> next = nextToGo(neededAtS);
+  if (!next) return false;
+  const uint32_t parent = evictable_[*next].parent;
   for (const CacheNode& child : cache_.children(parent)) {
     gpu_.release(child.gpu);
     ++counts_.evicted;
   }
   onEvicted_(cache_.node(parent).meta.key);
   cache_.removeChildren(parent);
+  isListed_ = false;
   return true;
 }
 
-std::optional<std::vector<ResidentChunk>> Residency::upload(const ChunkGroup& group) {
+// There is room for all of it.
+std::vector<ResidentChunk> Residency::upload(const ChunkGroup& group) {
   std::vector<ResidentChunk> uploaded;
   for (const LoadedChunk& chunk : group.chunks) {
     const std::optional<GpuChunk> place = gpu_.upload(chunk);
-    if (!place) {
-      for (const ResidentChunk& done : uploaded) gpu_.release(done.gpu);
-      return std::nullopt;
-    }
+    if (!place) break;
     uploaded.push_back(residentFrom(chunk, *place));
   }
-  return uploaded;
+  if (uploaded.size() == group.chunks.size()) return uploaded;
+  for (const ResidentChunk& done : uploaded) gpu_.release(done.gpu);  // larger than the staging memory
+  return {};
 }
 
 bool Residency::takeIn(const ChunkGroup& group, double neededAtS) {
-  for (;;) {
-    if (const auto uploaded = upload(group)) {
-      const uint32_t parent = *cache_.find(group.parent);
-      cache_.insertChildren(parent, *uploaded);
-      const uint32_t first = cache_.node(parent).firstChild;
-      for (uint32_t i = first; i < first + uploaded->size(); ++i) {
-        CacheNode& child = cache_.node(i);
-        child.plan = rule_.plan;
-        child.scheduledFrame = cache_.frame();
-        child.neededAtS = neededAtS;
-      }
-      counts_.loaded += uploaded->size();
-      return true;
-    }
-    if (evictOne(neededAtS)) continue;
+  while (!gpu_.hasRoomFor(group.chunks)) {
+    // What goes must not be the group that holds the parent: that is in use for what comes under it.
+    if (evictOne(neededAtS) && cache_.find(group.parent)) continue;
     ++counts_.refused;
     return false;
   }
+  const std::vector<ResidentChunk> uploaded = upload(group);
+  if (uploaded.empty()) {
+    ++counts_.refused;
+    return false;
+  }
+  const uint32_t parent = *cache_.find(group.parent);
+  cache_.insertChildren(parent, uploaded);
+  const uint32_t first = cache_.node(parent).firstChild;
+  for (uint32_t i = first; i < first + uploaded.size(); ++i) {
+    CacheNode& child = cache_.node(i);
+    child.plan = rule_.plan;
+    child.scheduledFrame = cache_.frame();
+    child.neededAtS = neededAtS;
+  }
+  counts_.loaded += uploaded.size();
+  isListed_ = false;
+  return true;
 }
 
 }  // namespace eye

@@ -26,12 +26,13 @@ class Residency {
   void begin(const EvictionRule& rule);
   // Whether something may go for a group that is needed at `neededAtS`: nothing that a walk has reached of late, no
   // ancestor of anything, and inside the region only what is needed clearly later.
+  // After a takeIn that failed: and that would help.
   bool canEvict(double neededAtS);
   // The group's children into the forest; false, and nothing changed but what has gone for it, where there is no room.
   // Its parent is resident, its children are not.
   bool takeIn(const ChunkGroup& group, double neededAtS);
-  // Of the resident groups, the share that could go at once for something visible.
-  double evictableShare();
+  // Of the resident groups, the share that could go, one after the other, for something visible.
+  double spareShare() const;
 
   struct Counts {
     uint64_t loaded = 0, evicted = 0;  // chunks
@@ -40,7 +41,9 @@ class Residency {
   const Counts& counts() const { return counts_; }
 
  private:
-  std::optional<std::vector<ResidentChunk>> upload(const ChunkGroup& group);
+  std::vector<ResidentChunk> upload(const ChunkGroup& group);
+  std::optional<size_t> nextToGo(double neededAtS);
+  bool helps(uint32_t parent) const;
   bool evictOne(double neededAtS);
 
   GpuStore& gpu_;
@@ -48,8 +51,7 @@ class Residency {
   TerrainCache cache_;
   Counts counts_;
   EvictionRule rule_;
-  std::vector<EvictableGroup> evictable_;  // from next_ on; made when first needed after begin()
-  size_t next_ = 0;
+  std::vector<EvictableGroup> evictable_;  // made when first needed after begin()
   bool isListed_ = false;
 };
 

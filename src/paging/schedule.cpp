@@ -47,8 +47,8 @@ void Schedule::update(TerrainCache& cache, const LookAhead& ahead, const PagingR
 }
 
 int Schedule::uploadsDue() {
-  constexpr double kMostAtOnce = 2;  // of what earlier frames left over
-  credit_ = std::min(credit_ + creditPerFrame_, kMostAtOnce);
+  constexpr double kMostSaved = 2;  // of what earlier frames left over
+  credit_ = std::min(credit_, kMostSaved) + creditPerFrame_;
   return static_cast<int>(credit_);
 }
 

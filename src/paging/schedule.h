@@ -1,6 +1,7 @@
 // What is to be loaded before it is missed: one plan an interval, worked off evenly. Owner thread: render.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 
 #include "paging/interval.h"
@@ -37,7 +38,7 @@ class Schedule {
   // Of the groups that the memory area waits for, how many may go to the GPU in this frame so that the interval's are
   // spread over its frames.
   int uploadsDue();
-  void uploaded(int groups) { credit_ -= groups; }
+  void uploaded(int groups) { credit_ = std::max(credit_ - groups, 0.0); }
 
  private:
   bool isDue(const LookAhead& ahead, const TerrainCache& cache) const;

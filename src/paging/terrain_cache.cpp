@@ -111,6 +111,13 @@ void TerrainCache::evictableGroups(const EvictionRule& rule, std::vector<Evictab
   });
 }
 
+size_t TerrainCache::groupsUnusedSince(uint64_t usedBefore) const {
+  size_t groups = 0;
+  for (size_t group = 0; group < groupParents_.size(); ++group)
+    groups += groupParents_[group] != kNoNode && nodes_[group * kSlots].usedFrame < usedBefore;
+  return groups;
+}
+
 uint32_t TerrainCache::takeSlots() {
   if (freeGroups_.empty()) {
     freeGroups_.push_back(static_cast<uint32_t>(groupParents_.size()));

@@ -37,7 +37,11 @@ struct GpuChunk {
 class GpuStore {
  public:
   virtual ~GpuStore() = default;
-  // Queues the upload for the next frame; nothing where the pools (the hard budget) have no room.
+  // Whether all of these would fit into the pools (the hard budget) now, one upload after the other.
+  virtual bool hasRoomFor(std::span<const LoadedChunk> chunks) = 0;
+  // Whether the chunk's release would give any of what the last hasRoomFor that said no was short of.
+  virtual bool wouldHelp(const GpuChunk& chunk) const = 0;
+  // Queues the upload for the next frame; nothing where the pools have no room.
   virtual std::optional<GpuChunk> upload(const LoadedChunk& chunk) = 0;
   virtual void release(const GpuChunk& chunk) = 0;
   virtual uint64_t bytesResident() const = 0;
@@ -111,6 +115,8 @@ class TerrainCache {
   // the region, by p = f + k t l (paper 000, equation 12; f: the last frame that used or scheduled it, l: 0 for the
   // finest level), so that of one age the finer goes first; then those inside, the last to be needed first.
   void evictableGroups(const EvictionRule& rule, std::vector<EvictableGroup>& groups) const;
+  // How many groups no walk from that frame on has reached, whether or not they have children.
+  size_t groupsUnusedSince(uint64_t usedBefore) const;
   // Resident children of a node: empty or three or four, behind one another.
   std::span<const CacheNode> children(uint32_t parent) const;
 

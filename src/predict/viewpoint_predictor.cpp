@@ -61,6 +61,7 @@ AxisNoise ViewpointPredictor::noise() const {
 }
 
 void ViewpointPredictor::start(double timeS, const Pose& pose, const Vec3d& ecefM, const Guess& guess) {
+  if (started_) ++counts_.restarts;
   position_.start(ecefM, guess.velocityEcefMS, guess.sigmaMS, noise());
   attitude_.start(attitudeOf(pose));
   horizontal_.restart();

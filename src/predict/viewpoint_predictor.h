@@ -46,6 +46,7 @@ struct PredictorCounts {
   uint64_t outliers = 0;      // not believed
   uint64_t teleports = 0;     // began anew elsewhere
   uint64_t resets = 0;        // time went back: began anew
+  uint64_t restarts = 0;      // began anew for whatever reason; the first beginning is none
 };
 
 struct PredictorState {

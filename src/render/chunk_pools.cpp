@@ -123,52 +123,78 @@ ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage text
   });
 }
 
-std::optional<GpuChunk> ChunkPools::upload(const LoadedChunk& chunk) {
-  const auto vertexCount = static_cast<uint32_t>(chunk.mesh.vertices.size());
-  const auto indexCount = static_cast<uint32_t>(chunk.mesh.indices.size());
-  const auto clusterCount = static_cast<uint32_t>(chunk.mesh.clusters.size());
-  EYE_CHECK(vertexCount > 0 && indexCount > 0 && clusterCount > 0 &&
-            (chunk.texels.empty() || chunk.texels.size() == chainBytes_));
-  const size_t vertexBytes = vertexCount * sizeof(ChunkVertex), indexBytes = indexCount * sizeof(uint16_t);
-  const size_t clusterBytes = clusterCount * sizeof(shader::ClusterRecord);
-  const uint64_t bytes =
-      roundUp(vertexBytes, 16) + roundUp(indexBytes, 16) + roundUp(clusterBytes, 16) + roundUp(chunk.texels.size(), 16);
-  if (bytes > staging_.size) return std::nullopt;
-  if (stagedBytes_ + bytes > staging_.size) flush();
-
+// A place for all of the chunk or nothing.
+std::optional<GpuChunk> ChunkPools::allocate(const LoadedChunk& chunk) {
   GpuChunk made;
-  made.vertexCount = vertexCount;
-  made.indexCount = indexCount;
-  made.clusterCount = clusterCount;
-  const auto vertexOffset = vertices_.allocate(vertexCount);
-  const auto firstIndex = indices_.allocate(indexCount);
-  const auto clusterOffset = clusters_.allocate(clusterCount);
-  std::optional<uint32_t> layer;
-  if (!chunk.texels.empty()) layer = layers_.allocate(1);
-  if (!vertexOffset || !firstIndex || !clusterOffset || (!chunk.texels.empty() && !layer)) {
-    if (vertexOffset) vertices_.release(*vertexOffset, vertexCount);
-    if (firstIndex) indices_.release(*firstIndex, indexCount);
-    if (clusterOffset) clusters_.release(*clusterOffset, clusterCount);
+  made.vertexCount = static_cast<uint32_t>(chunk.mesh.vertices.size());
+  made.indexCount = static_cast<uint32_t>(chunk.mesh.indices.size());
+  made.clusterCount = static_cast<uint32_t>(chunk.mesh.clusters.size());
+  const bool wantsLayer = !chunk.texels.empty();
+  const auto vertices = vertices_.allocate(made.vertexCount);
+  const auto indices = indices_.allocate(made.indexCount);
+  const auto clusters = clusters_.allocate(made.clusterCount);
+  const auto layer = wantsLayer ? layers_.allocate(1) : std::nullopt;
+  if (!vertices || !indices || !clusters || (wantsLayer && !layer)) {
+    onlyLayersShort_ = vertices && indices && clusters;
+    if (vertices) vertices_.release(*vertices, made.vertexCount);
+    if (indices) indices_.release(*indices, made.indexCount);
+    if (clusters) clusters_.release(*clusters, made.clusterCount);
     if (layer) layers_.release(*layer, 1);
     return std::nullopt;
   }
-  made.vertexOffset = *vertexOffset;
-  made.firstIndex = *firstIndex;
-  made.clusterOffset = *clusterOffset;
-  vertexCopies_.push_back(
-      {stage(chunk.mesh.vertices.data(), vertexBytes), *vertexOffset * sizeof(ChunkVertex), vertexBytes});
-  indexCopies_.push_back({stage(chunk.mesh.indices.data(), indexBytes), *firstIndex * sizeof(uint16_t), indexBytes});
-  records_.clear();
-  for (const ChunkCluster& cluster : chunk.mesh.clusters) records_.push_back(recordOf(cluster, *firstIndex));
-  clusterCopies_.push_back(
-      {stage(records_.data(), clusterBytes), *clusterOffset * sizeof(shader::ClusterRecord), clusterBytes});
-  if (!layer.has_value()) return made;
+  made.vertexOffset = *vertices;
+  made.firstIndex = *indices;
+  made.clusterOffset = *clusters;
+  if (layer) made.textureLayer = static_cast<int32_t>(*layer);
+  return made;
+}
 
-  made.textureLayer = static_cast<int32_t>(*layer);
+void ChunkPools::giveBack(const GpuChunk& chunk) {
+  vertices_.release(chunk.vertexOffset, chunk.vertexCount);
+  indices_.release(chunk.firstIndex, chunk.indexCount);
+  clusters_.release(chunk.clusterOffset, chunk.clusterCount);
+  if (chunk.textureLayer >= 0) layers_.release(static_cast<uint32_t>(chunk.textureLayer), 1);
+}
+
+bool ChunkPools::hasRoomFor(std::span<const LoadedChunk> chunks) {
+  std::vector<GpuChunk> tried;
+  for (const LoadedChunk& chunk : chunks) {
+    const std::optional<GpuChunk> place = allocate(chunk);
+    if (!place) break;
+    tried.push_back(*place);
+  }
+  for (const GpuChunk& place : tried) giveBack(place);
+  return tried.size() == chunks.size();
+}
+
+std::optional<GpuChunk> ChunkPools::upload(const LoadedChunk& chunk) {
+  EYE_CHECK(!chunk.mesh.vertices.empty() && !chunk.mesh.indices.empty() && !chunk.mesh.clusters.empty() &&
+            (chunk.texels.empty() || chunk.texels.size() == chainBytes_));
+  const size_t vertexBytes = chunk.mesh.vertices.size() * sizeof(ChunkVertex);
+  const size_t indexBytes = chunk.mesh.indices.size() * sizeof(uint16_t);
+  const size_t clusterBytes = chunk.mesh.clusters.size() * sizeof(shader::ClusterRecord);
+  const uint64_t bytes =
+      roundUp(vertexBytes, 16) + roundUp(indexBytes, 16) + roundUp(clusterBytes, 16) + roundUp(chunk.texels.size(), 16);
+  if (bytes > staging_.size) return std::nullopt;
+  const std::optional<GpuChunk> made = allocate(chunk);
+  if (!made) return std::nullopt;
+  if (stagedBytes_ + bytes > staging_.size) flush();
+
+  vertexCopies_.push_back(
+      {stage(chunk.mesh.vertices.data(), vertexBytes), made->vertexOffset * sizeof(ChunkVertex), vertexBytes});
+  indexCopies_.push_back(
+      {stage(chunk.mesh.indices.data(), indexBytes), made->firstIndex * sizeof(uint16_t), indexBytes});
+  records_.clear();
+  for (const ChunkCluster& cluster : chunk.mesh.clusters) records_.push_back(recordOf(cluster, made->firstIndex));
+  clusterCopies_.push_back(
+      {stage(records_.data(), clusterBytes), made->clusterOffset * sizeof(shader::ClusterRecord), clusterBytes});
+  if (made->textureLayer < 0) return made;
+
+  const auto layer = static_cast<uint32_t>(made->textureLayer);
   uint64_t offset = stage(chunk.texels.data(), chunk.texels.size());
   for (uint32_t mip = 0; mip < textures_.spec.mipLevels; ++mip) {
     const uint32_t side = std::max(1u, static_cast<uint32_t>(textureSize_) >> mip);
-    textureCopies_.push_back({offset, 0, 0, {vk::ImageAspectFlagBits::eColor, mip, *layer, 1}, {}, {side, side, 1}});
+    textureCopies_.push_back({offset, 0, 0, {vk::ImageAspectFlagBits::eColor, mip, layer, 1}, {}, {side, side, 1}});
     offset += uint64_t{4} * side * side;
   }
   return made;
@@ -177,10 +203,7 @@ std::optional<GpuChunk> ChunkPools::upload(const LoadedChunk& chunk) {
 void ChunkPools::release(const GpuChunk& chunk) {
   // Its place may be given away at once, and two copies to one place in the same commands have no order.
   if (isPending(chunk)) flush();
-  vertices_.release(chunk.vertexOffset, chunk.vertexCount);
-  indices_.release(chunk.firstIndex, chunk.indexCount);
-  clusters_.release(chunk.clusterOffset, chunk.clusterCount);
-  if (chunk.textureLayer >= 0) layers_.release(static_cast<uint32_t>(chunk.textureLayer), 1);
+  giveBack(chunk);
 }
 
 uint64_t ChunkPools::bytesResident() const {

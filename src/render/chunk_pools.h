@@ -26,6 +26,9 @@ class ChunkPools {
   // usage: the budget is too small (says how much it needs). Throws vk::SystemError.
   static Result<std::unique_ptr<ChunkPools>> create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize);
 
+  // As GpuStore says.
+  bool hasRoomFor(std::span<const LoadedChunk> chunks);
+  bool wouldHelp(const GpuChunk& chunk) const { return !onlyLayersShort_ || chunk.textureLayer >= 0; }
   // Copies into staging memory; on the GPU with the next recordUploads.
   std::optional<GpuChunk> upload(const LoadedChunk& chunk);
   void release(const GpuChunk& chunk);
@@ -46,6 +49,8 @@ class ChunkPools {
 
  private:
   ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize);
+  std::optional<GpuChunk> allocate(const LoadedChunk& chunk);
+  void giveBack(const GpuChunk& chunk);
   void flush();
   bool isPending(const GpuChunk& chunk) const;
   uint64_t stage(const void* data, size_t bytes);
@@ -57,6 +62,7 @@ class ChunkPools {
   GpuBuffer vertexBuffer_, indexBuffer_, clusterBuffer_, visibleBuffer_, staging_;
   GpuImage textures_;
   uint64_t stagedBytes_ = 0;
+  bool onlyLayersShort_ = false;  // in the last allocation that failed
   std::vector<vk::BufferCopy> vertexCopies_, indexCopies_, clusterCopies_;
   std::vector<shader::ClusterRecord> records_;  // of the chunk at hand
   std::vector<vk::BufferImageCopy> textureCopies_;

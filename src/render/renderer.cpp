@@ -130,6 +130,12 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
   }
 }
 
+bool Renderer::hasRoomFor(std::span<const LoadedChunk> chunks) {
+  return impl_->pools->hasRoomFor(chunks);
+}
+bool Renderer::wouldHelp(const GpuChunk& chunk) const {
+  return impl_->pools->wouldHelp(chunk);
+}
 std::optional<GpuChunk> Renderer::upload(const LoadedChunk& chunk) {
   return impl_->pools->upload(chunk);
 }

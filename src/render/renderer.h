@@ -117,6 +117,8 @@ class Renderer final : public GpuStore {
   static Result<std::vector<DeviceDescription>> listDevices();
   ~Renderer() override;
 
+  bool hasRoomFor(std::span<const LoadedChunk> chunks) override;
+  bool wouldHelp(const GpuChunk& chunk) const override;
   std::optional<GpuChunk> upload(const LoadedChunk& chunk) override;
   void release(const GpuChunk& chunk) override;
   uint64_t bytesResident() const override;

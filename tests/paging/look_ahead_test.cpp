@@ -232,7 +232,9 @@ TEST_CASE("a teleport a second across the globe: each time it recovers, and noth
 TEST_CASE("a still eye comes to rest whatever the budget") {
   const Path still = [](double) { return aroundMiddle(3); };
   for (uint64_t gpuBytes = 60'000; gpuBytes <= 640'000; gpuBytes = gpuBytes * 5 / 4) {
-    FakeStore gpu(gpuBytes);
+    // Bytes are short, or, as in a renderer's pools, places for imagery.
+    const bool layersShort = gpuBytes % 2 == 0;
+    FakeStore gpu(layersShort ? kPlenty : gpuBytes, layersShort ? gpuBytes / 6000 : kPlenty);
     const auto pager = open(gpu, {.ramBudgetBytes = 2'000'000});
     double fromS = 0;
     PagingCounts before;
@@ -246,6 +248,26 @@ TEST_CASE("a still eye comes to rest whatever the budget") {
     CHECK(pager->counts().loaded == before.loaded);
     CHECK(pager->counts().evicted == before.evicted);
     CHECK(pager->counts().requested == before.requested);
+  }
+}
+
+TEST_CASE("where places for imagery are short, others do not go in vain") {
+  for (uint64_t layers : {32u, 40u, 48u}) {
+    FakeStore gpu(kPlenty, layers);
+    const auto pager = open(gpu, {.ramBudgetBytes = 2'000'000});
+    fly(*pager, aroundMiddle, 0, kRoundS / 2, kRoundMS, 0.3);
+    INFO(layers << " layers, coarser by " << pager->coarsening());
+    const PagingCounts counts = pager->counts();
+    CHECK(counts.resident > layers);
+    // Where the detail is: what has no imagery of its own needs none of what is short.
+    Selection selection;
+    pager->cache().beginFrame();
+    selectChunks(pager->cache(), aroundMiddle(kRoundS / 2), {.ssePx = kSsePx, .coarsening = pager->coarsening()},
+                 selection);
+    int finest = 0;
+    for (const DrawnChunk& draw : selection.draws)
+      finest = std::max(finest, pager->cache().node(draw.node).meta.key.level());
+    CHECK(finest >= 6);
   }
 }
 
