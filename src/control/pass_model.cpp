@@ -40,7 +40,8 @@ void PassModel::learn(const SelectorInput& input, double sum) {
   const double passMs = on ? input.passCostMs : 0;
   const double occluded = on ? static_cast<double>(input.occludedTriangles) : 0;
   const double offMs = input.frameCostMs - passMs + occluded * triangleCost_.ms();
-  budget_.account(offMs, occluded * triangleCost_.provenMs() - passMs);
+  provenGainMs_ = occluded * triangleCost_.provenMs() - passMs;
+  budget_.account(offMs, provenGainMs_);
   offCostMs_.add(offMs);
   submitted_ = static_cast<double>(input.submittedTriangles);
   if (framesInUse_ < rules_.settleFrames) return;

@@ -23,7 +23,9 @@ class PassModel {
   DepthMapChoice bestSize(double sum) const;
   // Whether a trial of so many frames may be afforded, should it save nothing.
   bool affords(DepthMapChoice choice, int frames) const;
-  bool overspent() const { return budget_.empty(); }
+  // What may be lost is lost, and what is in use does not earn it back: it must go. A size that earns may stay, though
+  // the trial that found it has used the budget up.
+  bool overspent() const { return budget_.empty() && framesInUse_ >= rules_.settleFrames && provenGainMs_ <= 0; }
 
   // What a frame costs without the pass, measured or reckoned.
   double offMs() const { return offCostMs_.mean(); }
@@ -41,6 +43,7 @@ class PassModel {
   RunningMean offCostMs_, occluded_;
   RunningMedian drawOffMs_, drawOnMs_;  // drawing without the pass, and with it less the pass's own cost
   double submitted_ = 0;                // triangles, newest
+  double provenGainMs_ = 0;             // of the newest frame
   bool shareMeasured_ = false;
   double measuredSum_ = 0;  // of the frame whose share was measured last
   DepthMapChoice used_ = DepthMapChoice::off;
