@@ -53,6 +53,7 @@ Result<LoadedChunk> loadChunk(const DatabaseReader& reader, const TileKey& key, 
     cost->readS += static_cast<double>(readNs - beganNs) * 1e-9;
     cost->decodeS += static_cast<double>(monotonicNs() - readNs) * 1e-9;
     cost->fileBytes += reader.bytesRead() - readBefore;
+    cost->decodedBytes += loaded.bytes();
   }
   return loaded;
 }

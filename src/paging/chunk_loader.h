@@ -19,7 +19,7 @@ struct ChunkGroup {
 // What loading took.
 struct LoadCost {
   double readS = 0, decodeS = 0;
-  uint64_t fileBytes = 0;
+  uint64_t fileBytes = 0, decodedBytes = 0;
 };
 
 // Any damage is badData or notFound with the tile's name.

@@ -17,7 +17,7 @@ double PagingRates::transferBytesS() const {
 
 Interval chooseInterval(double speedMS, double finestWidthM, const PagingRates& rates, uint64_t roomBytes) {
   const double crossingS = speedMS > kStandingMS && finestWidthM > 0 ? finestWidthM / speedMS : kLongestS;
-  const double fillingS = rates.demandBytesS > 0 ? static_cast<double>(roomBytes) / rates.demandBytesS : kLongestS;
+  const double fillingS = rates.fillingBytesS > 0 ? static_cast<double>(roomBytes) / rates.fillingBytesS : kLongestS;
   const double transferBytesS = rates.transferBytesS();
   return {std::clamp(std::min(crossingS, fillingS), kShortestS, kLongestS),
           transferBytesS <= 0 || rates.demandBytesS < transferBytesS};

@@ -7,9 +7,10 @@ namespace eye {
 
 // Measured by the pager, running means.
 struct PagingRates {
-  double readBytesS = 0;    // of the file, while reading
-  double decodeBytesS = 0;  // of the file, while decoding
-  double demandBytesS = 0;  // of the file, that plans ask for in a second of flight
+  double readBytesS = 0;     // of the file, while reading
+  double decodeBytesS = 0;   // of the file, while decoding
+  double demandBytesS = 0;   // of the file, that plans ask for in a second of flight
+  double fillingBytesS = 0;  // the same when decoded: what it takes up in memory
   // What reading and decoding one after the other bring, bytes of the file; 0: not known yet.
   double transferBytesS() const;
 };

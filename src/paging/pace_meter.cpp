@@ -14,6 +14,7 @@ constexpr double kWindowsFade = 0.6;
 void PaceMeter::loaded(const LoadCost& cost) {
   groups_ = groups_ * kFade + 1;
   bytes_ = bytes_ * kFade + static_cast<double>(cost.fileBytes);
+  decodedBytes_ = decodedBytes_ * kFade + static_cast<double>(cost.decodedBytes);
   readS_ = readS_ * kFade + cost.readS;
   decodeS_ = decodeS_ * kFade + cost.decodeS;
   if (readS_ > 0) rates_.readBytesS = bytes_ / readS_;
@@ -24,9 +25,13 @@ void PaceMeter::asked(uint64_t groups, double nowS) {
   inWindow_ += groups;
   const double spanS = nowS - sinceS_;
   if (spanS < kWindowS) return;
-  const double bytesAGroup = groups_ > 0 ? bytes_ / groups_ : 0;
-  const double nowBytesS = static_cast<double>(inWindow_) * bytesAGroup / spanS;
-  rates_.demandBytesS = kWindowsFade * rates_.demandBytesS + (1 - kWindowsFade) * nowBytesS;
+  const double groupsS = static_cast<double>(inWindow_) / spanS;
+  const auto follow = [&](double& rate, double ofAllGroups) {
+    const double nowBytesS = groups_ > 0 ? groupsS * ofAllGroups / groups_ : 0;
+    rate = kWindowsFade * rate + (1 - kWindowsFade) * nowBytesS;
+  };
+  follow(rates_.demandBytesS, bytes_);
+  follow(rates_.fillingBytesS, decodedBytes_);
   sinceS_ = nowS;
   inWindow_ = 0;
 }

@@ -16,7 +16,7 @@ class PaceMeter {
  private:
   PagingRates rates_;
   // Sums that fade by a share with each group.
-  double groups_ = 0, bytes_ = 0, readS_ = 0, decodeS_ = 0;
+  double groups_ = 0, bytes_ = 0, decodedBytes_ = 0, readS_ = 0, decodeS_ = 0;
   double sinceS_ = 0;  // of the window in which groups are being counted
   uint64_t inWindow_ = 0;
 };

@@ -21,8 +21,9 @@ namespace {
 constexpr uint64_t kIdleFrames = 8;
 // Of the RAM budget, kept free for results that are on their way; a group that needs more gets it when it is known.
 constexpr uint64_t kRoomShare = 4;
-// When a group is needed that is seen and missed: before anything that is not seen, however soon that may be.
+// What is ahead by no more than this goes to the GPU at once.
 constexpr double kSoonS = 1;
+// When a group is needed that is seen and missed: before anything that is not seen, however soon that may be.
 constexpr double kSeen = -std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -52,7 +53,6 @@ struct Pager::Impl {
     TileKey parent;
     double neededAtS;  // on the look-ahead's clock
     bool inMemory;     // is to go to the GPU, not only to be decoded
-    bool operator==(const TileKey& key) const { return parent == key; }
   };
 
   const PagerOptions options;
@@ -274,10 +274,8 @@ int Pager::exchange(const Selection& selection, const LookAhead* ahead) {
   pager.takeResults();
   if (looksAhead) {
     const uint64_t ramUsed = std::min(pager.options.ramBudgetBytes, pager.ram.bytes());
-    LookAhead coarser = *ahead;
-    coarser.region.ssePx *= pager.coarsening.factor();
-    coarser.region.texelPx *= pager.coarsening.factor();
-    pager.schedule.update(pager.residency.cache(), coarser, pager.pace.rates(), pager.options.ramBudgetBytes - ramUsed);
+    pager.schedule.update(pager.residency.cache(), *ahead, pager.coarsening.factor(), pager.pace.rates(),
+                          pager.options.ramBudgetBytes - ramUsed);
   }
   const uint64_t idleFrames = pager.options.wait ? 0 : kIdleFrames;
   pager.residency.begin({cache.frame() - std::min(cache.frame(), idleFrames), pager.schedule.plan(),

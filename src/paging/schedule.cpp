@@ -29,7 +29,8 @@ bool Schedule::isDue(const LookAhead& ahead, const TerrainCache& cache) const {
   return std::ranges::count_if(plan_.wanted, isThere) * 2 >= static_cast<std::ptrdiff_t>(plan_.wanted.size());
 }
 
-void Schedule::update(TerrainCache& cache, const LookAhead& ahead, const PagingRates& rates, uint64_t roomBytes) {
+void Schedule::update(TerrainCache& cache, const LookAhead& ahead, double coarsening, const PagingRates& rates,
+                      uint64_t roomBytes) {
   if (!isDue(ahead, cache)) return;
   interval_ = chooseInterval(ahead.speedMS, plan_.finestWidthM, rates, roomBytes);
   memoryS_ = 2 * interval_.lengthS + kLatencyS;
@@ -39,7 +40,10 @@ void Schedule::update(TerrainCache& cache, const LookAhead& ahead, const PagingR
   path_.clear();
   for (size_t i = 0; i <= steps; ++i)
     path_.push_back(ahead.at(cacheS_ * static_cast<double>(i) / static_cast<double>(steps)));
-  planRegion(cache, path_, ahead.region, ahead.nowS, ++number_, plan_);
+  RegionOptions region = ahead.region;
+  region.ssePx *= coarsening;
+  region.texelPx *= coarsening;
+  planRegion(cache, path_, region, ahead.nowS, ++number_, plan_);
   plannedAtS_ = ahead.nowS;
   const auto inMemory = static_cast<double>(
       std::ranges::count_if(plan_.wanted, [this](const GroupAhead& group) { return isInMemoryArea(group); }));

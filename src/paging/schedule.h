@@ -23,8 +23,9 @@ inline constexpr double kFarthestAheadS = 15;
 class Schedule {
  public:
   // A new plan when the interval is over, when what the last one asked for is there, or after a jump. `roomBytes`: what
-  // decoded groups may still take up in memory.
-  void update(TerrainCache& cache, const LookAhead& ahead, const PagingRates& rates, uint64_t roomBytes);
+  // decoded groups may still take up in memory; `coarsening`: the tolerances of `ahead` are taken times this.
+  void update(TerrainCache& cache, const LookAhead& ahead, double coarsening, const PagingRates& rates,
+              uint64_t roomBytes);
   // What the plan asks for, soonest first: in the memory area to be on the GPU, behind it in the cache area to be
   // decoded.
   std::span<const GroupAhead> wanted() const { return plan_.wanted; }
