@@ -108,8 +108,6 @@ OpenedSource openCigi(const std::string& url, const std::string& rest, const Ope
   constexpr const char* kOptions[] = {"reply", "view", "database", "allow"};
   const auto parsed = parseHostUrl(url, rest, kOptions);
   if (!parsed) return tl::unexpected(parsed.error());
-  const auto endpoint = parseEndpoint(parsed->place, kLoopbackAddress, url);
-  if (!endpoint) return tl::unexpected(endpoint.error());
 
   CigiOptions options;
   const auto view = numberOption(*parsed, "view", 0, 65535, 0);
@@ -129,8 +127,8 @@ OpenedSource openCigi(const std::string& url, const std::string& rest, const Ope
     options.reply = *peer;
   }
 
-  auto socket = UdpSocket::listenOn(*endpoint);
-  if (!socket) return fail(socket.error().kind, url + ": " + socket.error().message);
+  auto socket = listenOn(*parsed);
+  if (!socket) return tl::unexpected(socket.error());
   return std::make_unique<CigiSource>(std::move(*socket), options, openProbe, url);
 }
 

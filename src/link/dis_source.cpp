@@ -7,6 +7,7 @@
 #include "link/dis_motion.h"
 #include "link/host_url.h"
 #include "link/link_thread.h"
+#include "link/live_sample.h"
 #include "link/live_sources.h"
 #include "telemetry/trace.h"
 
@@ -19,11 +20,6 @@ constexpr int64_t kTimeOutNs = 12'000'000'000;
 struct EntityName {
   uint16_t site = 0, application = 0, entity = 0;
   bool operator==(const EntityName&) const = default;
-};
-
-struct Arrived {
-  DisEntityState state;
-  int64_t arrivedNs = 0;
 };
 
 EntityName nameOf(const DisEntityState& state) {
@@ -41,12 +37,8 @@ class DisSource final : public StateSource, private LinkProtocol {
 
   SourceSample sample(double) override {
     const auto newest = mailbox_.take();
-    SourceSample sample;
-    sample.live = true;
-    sample.counts = newest.counts;
+    SourceSample sample = liveSample(newest);
     if (!newest.state) return sample;
-    sample.valid = true;
-    sample.arrivedNs = newest.state->arrivedNs;
     const int64_t sinceNs = std::min(monotonicNs() - sample.arrivedNs, kTimeOutNs);
     sample.pose = deadReckoned(newest.state->state, static_cast<double>(sinceNs) * 1e-9);
     if (newest.state->state.deadReckoning > DeadReckoning::hold) sample.carriedToNs = sample.arrivedNs + sinceNs;
@@ -65,7 +57,7 @@ class DisSource final : public StateSource, private LinkProtocol {
     if (wanted_ ? *wanted_ != name : isOther) return {};  // the others of the exercise
     if (!newest_ || nameOf(newest_->state) != name)
       spdlog::info("{}: follows entity {}:{}:{} '{}'", url_, name.site, name.application, name.entity, state->marking);
-    newest_ = Arrived{*state, nowNs};
+    newest_ = Arrived<DisEntityState>{*state, nowNs};
     return {};
   }
   void publish(const HostCounts& counts, int64_t) override { mailbox_.put(newest_, counts); }
@@ -74,8 +66,8 @@ class DisSource final : public StateSource, private LinkProtocol {
   UdpSocket socket_;
   const AllowList allowed_;
   const std::optional<EntityName> wanted_;
-  std::optional<Arrived> newest_;  // the link thread's
-  Mailbox<Arrived> mailbox_;
+  std::optional<Arrived<DisEntityState>> newest_;  // the link thread's
+  Mailbox<Arrived<DisEntityState>> mailbox_;
   LinkThread thread_;  // last: it uses the others
 };
 
@@ -101,8 +93,6 @@ OpenedSource openDis(const std::string& url, const std::string& rest) {
   constexpr const char* kOptions[] = {"entity", "allow"};
   const auto parsed = parseHostUrl(url, rest, kOptions);
   if (!parsed) return tl::unexpected(parsed.error());
-  const auto endpoint = parseEndpoint(parsed->place, kLoopbackAddress, url);
-  if (!endpoint) return tl::unexpected(endpoint.error());
   std::optional<EntityName> wanted;
   if (const std::string* text = parsed->find("entity")) {
     const auto name = parseEntityName(*text, url);
@@ -111,8 +101,8 @@ OpenedSource openDis(const std::string& url, const std::string& rest) {
   }
   auto allowed = AllowList::of(*parsed);
   if (!allowed) return tl::unexpected(allowed.error());
-  auto socket = UdpSocket::listenOn(*endpoint);
-  if (!socket) return fail(socket.error().kind, url + ": " + socket.error().message);
+  auto socket = listenOn(*parsed);
+  if (!socket) return tl::unexpected(socket.error());
   return std::make_unique<DisSource>(std::move(*socket), std::move(*allowed), wanted, url);
 }
 

@@ -14,6 +14,14 @@ constexpr size_t kMaxAllowed = 64;
 
 }  // namespace
 
+Result<UdpSocket> listenOn(const HostUrl& url) {
+  const auto endpoint = parseEndpoint(url.place, kLoopbackAddress, url.text);
+  if (!endpoint) return tl::unexpected(endpoint.error());
+  auto socket = UdpSocket::listenOn(*endpoint);
+  if (!socket) return fail(socket.error().kind, url.text + ": " + socket.error().message);
+  return socket;
+}
+
 const std::string* HostUrl::find(const std::string& key) const {
   const auto at = options.find(key);
   return at == options.end() ? nullptr : &at->second;

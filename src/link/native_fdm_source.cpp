@@ -1,16 +1,12 @@
 // native-fdm://ADDR:PORT: the newest packet's state, as it came.
 #include "link/host_url.h"
 #include "link/link_thread.h"
+#include "link/live_sample.h"
 #include "link/live_sources.h"
 #include "link/native_fdm.h"
 
 namespace eye {
 namespace {
-
-struct Arrived {
-  NativeFdmState state;
-  int64_t arrivedNs = 0;
-};
 
 class NativeFdmSource final : public StateSource, private LinkProtocol {
  public:
@@ -19,14 +15,8 @@ class NativeFdmSource final : public StateSource, private LinkProtocol {
 
   SourceSample sample(double) override {
     const auto newest = mailbox_.take();
-    SourceSample sample;
-    sample.live = true;
-    sample.counts = newest.counts;
-    if (!newest.state) return sample;
-    sample.valid = true;
-    sample.pose = newest.state->state.pose;
-    sample.visibilityM = newest.state->state.visibilityM;
-    sample.arrivedNs = newest.state->arrivedNs;
+    SourceSample sample = liveSample(newest);
+    if (newest.state) sample.visibilityM = newest.state->state.visibilityM;
     return sample;
   }
   bool isLive() const override { return true; }
@@ -38,15 +28,15 @@ class NativeFdmSource final : public StateSource, private LinkProtocol {
     const auto state = parseNativeFdm(datagram);
     if (!state) return tl::unexpected(state.error());
     // The packet's clock stays unused: whole seconds in FlightGear, a constant or ticks in JSBSim.
-    newest_ = Arrived{*state, nowNs};
+    newest_ = Arrived<NativeFdmState>{*state, nowNs};
     return {};
   }
   void publish(const HostCounts& counts, int64_t) override { mailbox_.put(newest_, counts); }
 
   UdpSocket socket_;
   const AllowList allowed_;
-  std::optional<Arrived> newest_;  // the link thread's
-  Mailbox<Arrived> mailbox_;
+  std::optional<Arrived<NativeFdmState>> newest_;  // the link thread's
+  Mailbox<Arrived<NativeFdmState>> mailbox_;
   LinkThread thread_;  // last: it uses the others
 };
 
@@ -56,12 +46,10 @@ OpenedSource openNativeFdm(const std::string& url, const std::string& rest) {
   constexpr const char* kOptions[] = {"allow"};
   const auto parsed = parseHostUrl(url, rest, kOptions);
   if (!parsed) return tl::unexpected(parsed.error());
-  const auto endpoint = parseEndpoint(parsed->place, kLoopbackAddress, url);
-  if (!endpoint) return tl::unexpected(endpoint.error());
   auto allowed = AllowList::of(*parsed);
   if (!allowed) return tl::unexpected(allowed.error());
-  auto socket = UdpSocket::listenOn(*endpoint);
-  if (!socket) return fail(socket.error().kind, url + ": " + socket.error().message);
+  auto socket = listenOn(*parsed);
+  if (!socket) return tl::unexpected(socket.error());
   return std::make_unique<NativeFdmSource>(std::move(*socket), std::move(*allowed), url);
 }
 

@@ -3,6 +3,7 @@
 
 #include "link/host_url.h"
 #include "link/link_thread.h"
+#include "link/live_sample.h"
 #include "link/live_sources.h"
 #include "link/xplane.h"
 #include "telemetry/trace.h"
@@ -13,28 +14,13 @@ namespace {
 constexpr int kDefaultRateHz = 60;
 constexpr int64_t kAskAgainNs = 1'000'000'000;
 
-struct Arrived {
-  RposState state;
-  int64_t arrivedNs = 0;
-};
-
 class XplaneSource final : public StateSource, private LinkProtocol {
  public:
   XplaneSource(UdpSocket socket, const Peer& xplane, int rateHz, const std::string& url)
       : socket_(std::move(socket)), xplane_(xplane), rateHz_(rateHz), thread_(socket_, *this, url) {}
   ~XplaneSource() override { (void)socket_.sendTo(buildRposRequest(0), xplane_); }  // no more, please
 
-  SourceSample sample(double) override {
-    const auto newest = mailbox_.take();
-    SourceSample sample;
-    sample.live = true;
-    sample.counts = newest.counts;
-    if (!newest.state) return sample;
-    sample.valid = true;
-    sample.pose = newest.state->state.pose;
-    sample.arrivedNs = newest.state->arrivedNs;
-    return sample;
-  }
+  SourceSample sample(double) override { return liveSample(mailbox_.take()); }
   bool isLive() const override { return true; }
   bool isFixed() const override { return false; }
 
@@ -44,7 +30,7 @@ class XplaneSource final : public StateSource, private LinkProtocol {
       return fail(ErrorKind::badData, fmt::format("{} is not the X-Plane that was asked", toText(sender)));
     const auto state = parseRpos(datagram);
     if (!state) return tl::unexpected(state.error());
-    newest_ = Arrived{*state, nowNs};
+    newest_ = Arrived<RposState>{*state, nowNs};
     return {};
   }
 
@@ -59,9 +45,9 @@ class XplaneSource final : public StateSource, private LinkProtocol {
   UdpSocket socket_;
   const Peer xplane_;
   const int rateHz_;
-  std::optional<Arrived> newest_;  // these two the link thread's
+  std::optional<Arrived<RposState>> newest_;  // these two the link thread's
   int64_t askedNs_ = 0;
-  Mailbox<Arrived> mailbox_;
+  Mailbox<Arrived<RposState>> mailbox_;
   LinkThread thread_;  // last: it uses the others
 };
 
