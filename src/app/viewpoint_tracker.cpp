@@ -12,7 +12,8 @@ namespace {
 // Without a prediction the speed still sets the pager's interval. Faster is a jump.
 constexpr double kFastestMS = 10000;
 constexpr double kRadPerDeg = std::numbers::pi / 180;
-// While the predictor does not know the velocity yet, its radius is that of everything that flies.
+// A wider circle, as long as the predictor does not know the velocity or after seconds of a reversal, would ask for
+// more of the finest ground than can be loaded, and the nearest not first.
 constexpr double kGreatestRadiusM = 2000;
 // The eye goes this long without a packet, then it waits.
 constexpr double kFarthestExtrapolationS = 0.2;

@@ -10,9 +10,9 @@ namespace eye {
 class Coarsening {
  public:
   double factor() const { return factor_; }
-  // After each exchange. `isStarved`: something seen found no room. `isMoving`: the view is another one all the time,
-  // so that what did not fit may fit now.
-  void steer(bool isStarved, bool isMoving, const Residency& residency);
+  // After each exchange, `stepS` seconds after the last. `isStarved`: something seen found no room. `isMoving`: the
+  // view is another one all the time, so that what did not fit may fit now.
+  void steer(double stepS, bool isStarved, bool isMoving, const Residency& residency);
 
  private:
   double factor_ = 1;

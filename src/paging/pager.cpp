@@ -1,10 +1,12 @@
 #include "paging/pager.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <unordered_set>
+#include <unordered_map>
 
 #include "paging/coarsening.h"
 #include "paging/pace_meter.h"
@@ -16,9 +18,15 @@
 namespace eye {
 namespace {
 
-// A group must have been out of every walk for this many frames before it makes room for another, so that an eye that
-// sways does not load and evict in turns. When waiting, frames are steps of one and the same view: one is enough.
-constexpr uint64_t kIdleFrames = 8;
+// A group must have been out of every walk for so long before it makes room for another, so that an eye that sways does
+// not load and evict in turns; at low rates for some frames at least. When waiting, frames are steps of one and the
+// same view: none is needed.
+constexpr double kIdleS = 0.13;
+constexpr double kFewestIdleFrames = 3;
+// Without a look-ahead nobody says how fast frames come.
+constexpr double kUsualRateHz = 60;
+// A read that failed may succeed later (a network drive, a file that is being replaced); damage stays.
+constexpr int64_t kRetryNs = 2'000'000'000, kNever = std::numeric_limits<int64_t>::max();
 // Of the RAM budget, kept free for results that are on their way; a group that needs more gets it when it is known.
 constexpr uint64_t kRoomShare = 4;
 // What is ahead by no more than this goes to the GPU at once.
@@ -40,6 +48,8 @@ struct Pager::Impl {
   void listWanted(const Selection& selection);
   void listAhead();
   bool isOpen(const TileKey& parent) const;
+  bool isLost(const TileKey& parent) const;
+  void lose(const TileKey& parent, const Error& error);
   void takeResults();
   void trimRam();
   // What is wanted and not in RAM, from `begin` on; nothing while the GPU has no room for what is there already.
@@ -63,11 +73,11 @@ struct Pager::Impl {
   PaceMeter pace;
   Coarsening coarsening;
   PagingCounts counts;
-  std::unordered_set<TileKey> lost;   // parents whose children cannot be had: damaged, or too big for the RAM budget
-  std::unordered_set<TileKey> asked;  // the last request list, to count what is new in it
-  bool isGpuFull = false;             // an upload failed, and nothing could be evicted for it
-  uint32_t fullPlan = 0;              // the plan whose look-ahead found no room
-  double fullFromS = 0;               // for what is needed then or later
+  // Parents whose children could not be had, and when to try again: kNever if damaged, or too big for the RAM budget.
+  std::unordered_map<TileKey, int64_t> lostUntilNs;
+  bool isGpuFull = false;  // an upload failed, and nothing could be evicted for it
+  uint32_t fullPlan = 0;   // the plan whose look-ahead found no room
+  double fullFromS = 0;    // for what is needed then or later
   uint64_t blockedBytes = 0;
   double nowS = 0;
   int64_t beganNs = 0;         // of this exchange's uploads
@@ -77,7 +87,7 @@ struct Pager::Impl {
   std::vector<Wanted> wanted;
   size_t missing = 0;  // the first of `wanted`: what the selection misses
   std::vector<TileKey> requests;
-  std::unordered_set<TileKey> listed;
+  std::vector<TileKey> asked;  // the last request list, sorted, to count what is new in it
   std::vector<LoadResult> results;
 
   PagingThread thread;  // last: it is joined before anything else goes
@@ -85,7 +95,21 @@ struct Pager::Impl {
 
 bool Pager::Impl::isOpen(const TileKey& parent) const {
   const std::optional<uint32_t> node = residency.cache().find(parent);
-  return node && residency.cache().children(*node).empty() && !lost.contains(parent);
+  return node && residency.cache().children(*node).empty() && !isLost(parent);
+}
+
+bool Pager::Impl::isLost(const TileKey& parent) const {
+  const auto found = lostUntilNs.find(parent);
+  return found != lostUntilNs.end() && monotonicNs() < found->second;
+}
+
+// Said once a group.
+void Pager::Impl::lose(const TileKey& parent, const Error& error) {
+  const bool mayReturn = error.kind == ErrorKind::io;
+  const bool isNew = lostUntilNs.insert_or_assign(parent, mayReturn ? monotonicNs() + kRetryNs : kNever).second;
+  if (!isNew) return;
+  if (!mayReturn && error.kind != ErrorKind::noSpace) ++counts.damaged;
+  spdlog::warn("Terrain stays coarse{}: {}", mayReturn ? " until it can be read" : "", error.message);
 }
 
 void Pager::Impl::listWanted(const Selection& selection) {
@@ -99,10 +123,10 @@ void Pager::Impl::listWanted(const Selection& selection) {
 }
 
 void Pager::Impl::listAhead() {
-  listed.clear();
-  for (const Wanted& group : wanted) listed.insert(group.parent);
   for (const GroupAhead& group : schedule.wanted()) {
-    if (isOpen(group.parent) && !listed.contains(group.parent))
+    // What is missed is a few groups at most, once terrain has come in.
+    const auto isIt = [&](const Wanted& missed) { return missed.parent == group.parent; };
+    if (isOpen(group.parent) && std::none_of(wanted.begin(), wanted.begin() + std::ptrdiff_t(missing), isIt))
       wanted.push_back({group.parent, schedule.plannedAtS() + group.neededInS, schedule.isInMemoryArea(group)});
   }
 }
@@ -119,8 +143,7 @@ void Pager::Impl::takeResults() {
       if (residency.cache().find(result.parent)) ram.insert(std::move(*result.group));
       continue;
     }
-    lost.insert(result.parent);
-    if (result.group.error().kind != ErrorKind::noSpace) ++counts.damaged;
+    lose(result.parent, result.group.error());
   }
   results.clear();
 }
@@ -136,7 +159,7 @@ void Pager::Impl::sendRequests(size_t begin) {
   // What is decoded and waits for its upload takes RAM: beyond half of the budget more would only push out the first.
   for (size_t i = begin; i < wanted.size() && !isGpuFull && waitingBytes <= options.ramBudgetBytes / 2; ++i) {
     const TileKey& parent = wanted[i].parent;
-    if (lost.contains(parent)) continue;
+    if (isLost(parent)) continue;
     const ChunkGroup* group = ram.use(parent);
     if (group != nullptr) {
       waitingBytes += group->bytes();
@@ -146,14 +169,14 @@ void Pager::Impl::sendRequests(size_t begin) {
   }
   uint64_t newGroups = 0;
   for (const TileKey& parent : requests) {
-    if (asked.contains(parent)) continue;
+    if (std::ranges::binary_search(asked, parent.code(), {}, &TileKey::code)) continue;
     ++newGroups;
     counts.requested += static_cast<uint64_t>(parent.children().count);
   }
   pace.asked(newGroups, nowS);
   if (!isGpuFull) {
-    asked.clear();
-    asked.insert(requests.begin(), requests.end());
+    asked = requests;
+    std::ranges::sort(asked, {}, &TileKey::code);
   }
   trimRam();
   thread.request(requests, options.ramBudgetBytes - ram.bytes());
@@ -212,12 +235,12 @@ int Pager::Impl::takeInAll() {
   int taken = 0;
   for (size_t i = 0; i < wanted.size(); ++i) {
     const TileKey& parent = wanted[i].parent;
-    while (!lost.contains(parent) && ram.use(parent) == nullptr) {
+    while (!isLost(parent) && ram.use(parent) == nullptr) {
       sendRequests(i);
       thread.waitForResult();
       takeResults();
     }
-    if (lost.contains(parent)) continue;
+    if (isLost(parent)) continue;
     const ChunkGroup* group = ram.use(parent);
     isGpuFull = !residency.takeIn(*group, kSeen);
     if (isGpuFull) break;
@@ -269,6 +292,8 @@ int Pager::exchange(const Selection& selection, const LookAhead* ahead) {
   Impl& pager = *impl_;
   const TerrainCache& cache = pager.residency.cache();
   const bool looksAhead = ahead != nullptr && !pager.options.wait;
+  const double rateHz = looksAhead ? ahead->frameRateHz : kUsualRateHz;
+  const double stepS = looksAhead ? std::max(ahead->nowS - pager.nowS, 0.0) : 1 / kUsualRateHz;
   if (looksAhead) pager.nowS = ahead->nowS;
 
   pager.takeResults();
@@ -277,9 +302,10 @@ int Pager::exchange(const Selection& selection, const LookAhead* ahead) {
     pager.schedule.update(pager.residency.cache(), *ahead, pager.coarsening.factor(), pager.pace.rates(),
                           pager.options.ramBudgetBytes - ramUsed);
   }
-  const uint64_t idleFrames = pager.options.wait ? 0 : kIdleFrames;
+  const auto idleFrames =
+      pager.options.wait ? 0 : static_cast<uint64_t>(std::max(std::ceil(kIdleS * rateHz), kFewestIdleFrames));
   pager.residency.begin({cache.frame() - std::min(cache.frame(), idleFrames), pager.schedule.plan(),
-                         looksAhead ? pager.schedule.interval().lengthS * ahead->frameRateHz : kIdleFrames});
+                         looksAhead ? pager.schedule.interval().lengthS * rateHz : kIdleS * rateHz});
   pager.listWanted(selection);
   // What did not fit waits, and nothing is read, until something else has fallen out of use.
   if (pager.isGpuFull && pager.missing > 0) pager.isGpuFull = !pager.residency.canEvict(kSeen);
@@ -296,7 +322,7 @@ int Pager::exchange(const Selection& selection, const LookAhead* ahead) {
   pager.sendRequests(0);
   constexpr double kMovingMS = 1;
   const bool isMoving = ahead != nullptr && ahead->speedMS > kMovingMS;
-  if (!pager.options.wait) pager.coarsening.steer(pager.isGpuFull, isMoving, pager.residency);
+  if (!pager.options.wait) pager.coarsening.steer(stepS, pager.isGpuFull, isMoving, pager.residency);
   return taken;
 }
 

@@ -1,7 +1,6 @@
 #include "paging/paging_thread.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -102,7 +101,6 @@ void PagingThread::run() {
                                                parent.name(), bytes, ramBudgetBytes_));
       bytes = 0;
     }
-    if (!result.group) spdlog::warn("Terrain stays coarse: {}", result.group.error().message);
 
     lock.lock();
     bytesRead_ = reader_.bytesRead();

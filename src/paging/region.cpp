@@ -21,6 +21,9 @@ constexpr double kNearestM = 1;
 constexpr double kHysteresis = 1.15;
 // Of a head or a camera: what lies outside the view is needed when a turn at this rate has brought it in.
 constexpr double kHeadTurnRadS = 40 * kPi / 180;
+// Equation (7) reaches as far as the view's upper edge: that of a view which looks up from now on, for so long as
+// terrain takes to come.
+constexpr double kLookUpS = 1;
 // Half widths of the front and, beyond the sides, of the rear.
 constexpr double kFrontRad = kPi / 4, kSidesRad = 3 * kPi / 4;
 
@@ -31,7 +34,8 @@ class RegionWalk {
       : cache_(cache), path_(path), options_(options), nowS_(nowS), plan_(plan), out_(out) {
     for (const ViewpointAhead& at : path) {
       const double down = glm::dot(at.forwardEcef, -glm::normalize(at.ecefM));
-      const double upperEdgeRad = std::acos(std::clamp(down, -1.0, 1.0)) + options.halfFovRad;
+      const double upperEdgeRad =
+          std::acos(std::clamp(down, -1.0, 1.0)) + options.halfFovRad + kHeadTurnRadS * kLookUpS;
       radiiM_.push_back(options.widening * schedulingRadiusM(std::max(at.heightM, 0.0), upperEdgeRad, kHighestGroundM));
     }
   }

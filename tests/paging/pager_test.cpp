@@ -2,6 +2,7 @@
 
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
+#include <sqlite3.h>
 
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -275,6 +276,29 @@ TEST_CASE("a damaged chunk keeps its parent drawn, is reported once and not read
   const std::string text = log.text();
   CHECK(std::ranges::count(text, '\n') == 2);  // one a pager
   CHECK(text.find(damaged.name()) != std::string::npos);
+}
+
+TEST_CASE("what cannot be read for a while comes when it can, and is spoken of once") {
+  const ForestFile forest(around(kLatDeg, kLonDeg, 1, 4));
+  const LogCatcher log;
+  FakeStore gpu(kPlenty);
+  Result<std::unique_ptr<Pager>> pager = Pager::create(forest.path(), gpu, {});
+  REQUIRE(pager.has_value());
+  sqlite3* other = nullptr;
+  REQUIRE(sqlite3_open(forest.path().c_str(), &other) == SQLITE_OK);
+  REQUIRE(sqlite3_exec(other, "BEGIN EXCLUSIVE", nullptr, nullptr, nullptr) == SQLITE_OK);
+  Selection selection;
+  const View view = viewAt(kLatDeg, kLonDeg, 30000);
+  // A reader waits for a lock for five seconds before it gives up.
+  for (int i = 0; i < 100 && log.text().empty(); ++i) {
+    CHECK(settle(**pager, view, selection, 100) == 100);
+  }
+  CHECK(log.text().find("in use by another program") != std::string::npos);
+  sqlite3_close(other);
+  CHECK(settle(**pager, view, selection, 10'000) < 10'000);
+  CHECK((*pager)->counts().damaged == 0);
+  const std::string text = log.text();
+  CHECK(std::ranges::count(text, '\n') == 1);
 }
 
 TEST_CASE("a pager that is at work can be destroyed at any moment") {

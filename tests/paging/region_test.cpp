@@ -12,6 +12,7 @@ namespace eye {
 namespace {
 
 constexpr double kPi = 3.14159265358979;
+constexpr double kLookUpRad = 40 * kPi / 180;  // within a second
 
 Vec3d forwardOf(const View& view) {
   return glm::transpose(view.eyeFromEcef) * Vec3d(0, 0, 1);
@@ -53,7 +54,8 @@ double neededIn(const ChunkMeta& meta, std::span<const ViewpointAhead> path, con
     const double texelPx = meta.texelErrorM * o.pixelsPerRadian / d;
     const double excess = std::max(errorPx / o.ssePx, texelPx / o.texelPx) / std::sqrt(area) * o.widening * hysteresis;
     const double downRad = std::acos(std::clamp(glm::dot(at.forwardEcef, -glm::normalize(at.ecefM)), -1.0, 1.0));
-    const double limitM = o.widening * hysteresis * schedulingRadiusM(at.heightM, downRad + o.halfFovRad, 8850);
+    const double limitM =
+        o.widening * hysteresis * schedulingRadiusM(at.heightM, downRad + o.halfFovRad + kLookUpRad, 8850);
     if (excess >= 1 && d <= limitM)
       soonest = std::min(soonest, at.inS + std::max(angle - o.halfFovRad, 0.0) / (40 * kPi / 180));
   }
@@ -149,7 +151,7 @@ TEST_CASE("whatever the frame of a predicted viewpoint will miss is planned, at 
     std::map<TileKey, double> wanted;
     for (const GroupAhead& group : plan.wanted) wanted[group.parent] = group.neededInS;
     const double downRad = std::acos(glm::dot(forwardOf(later), -glm::normalize(later.eyeEcefM)));
-    const double reachM = schedulingRadiusM(where.altM, downRad + options.halfFovRad, 8850);
+    const double reachM = schedulingRadiusM(where.altM, downRad + options.halfFovRad + kLookUpRad, 8850);
     Selection selection;
     cache.beginFrame();
     selectChunks(cache, later, {.ssePx = options.ssePx}, selection);
