@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # Everything that is checked: installs what is missing, builds, lints, then every test. The last lines are ctest's summary.
-#   tools/test.sh [--sanitizers] [options of ctest]
+#   tools/test.sh [--sanitizers] [--long] [options of ctest]
 # --sanitizers: before that the modules that read foreign data or share memory between threads, under ASan and UBSan and
-# under TSan: three more builds' time.
+# under TSan: three more builds' time. --long: also what takes minutes (ten million filter steps, thousands of compared
+# pictures, the error of every tolerance).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=$(nproc)
-sanitizers=no
-if [ "${1:-}" = "--sanitizers" ]; then
-  sanitizers=yes
+sanitizers=no long=no
+while [ "${1:-}" = "--sanitizers" ] || [ "${1:-}" = "--long" ]; do
+  [ "$1" = "--long" ] && long=yes || sanitizers=yes
   shift
-fi
+done
 
 step() { printf '\n== %s (%d s so far)\n' "$1" "$SECONDS"; }
 
@@ -36,6 +37,15 @@ export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrac
 if [ "$sanitizers" = yes ]; then
   sanitize asan base geo predict terrain bake paging link
   sanitize tsan telemetry paging link
+fi
+
+if [ "$long" = yes ]; then
+  step "long tests"
+  # They need the terrain that the programs' tests bake.
+  ctest --test-dir build/release -R "bake carpathia"
+  build/release/bin/test_predict "[long]"
+  build/release/bin/test_culling "[by hand]"
+  build/release/bin/test_system "truth: time against error"
 fi
 
 step "every test"
