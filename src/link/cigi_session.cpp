@@ -170,6 +170,7 @@ void Session::take(const Weather& weather) {
 Snapshot Session::snapshot() const {
   Snapshot snapshot;
   snapshot.arrivedNs = arrivedNs_;
+  snapshot.hostFrame = control_.hostFrame;
   snapshot.edges = edges_;
   snapshot.sky = sky_;
   snapshot.air = air_;

@@ -23,6 +23,7 @@ struct Sky {
 struct Snapshot {
   EyeChain eye;
   int64_t arrivedNs = 0;  // of the newest message
+  uint32_t hostFrame = 0;
   ViewEdges edges;
   Sky sky;
   Air air;

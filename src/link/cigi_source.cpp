@@ -16,6 +16,7 @@ namespace {
 struct CigiOptions {
   uint16_t viewId = 0;
   std::optional<Peer> reply;
+  bool silent = false;  // nothing is sent at all: another channel answers
   std::optional<int8_t> databaseNumber;
   AllowList allowed;
 };
@@ -26,6 +27,7 @@ class CigiSource final : public StateSource, private LinkProtocol {
       : url_(url),
         socket_(std::move(socket)),
         allowed_(options.allowed),
+        silent_(options.silent),
         session_(options.viewId),
         replies_(options.reply, options.databaseNumber),
         desk_(replies_, openProbe, url),
@@ -40,6 +42,7 @@ class CigiSource final : public StateSource, private LinkProtocol {
     const cigi::Snapshot& state = *newest.state;
     const int64_t nowNs = monotonicNs();
     sample.arrivedNs = state.arrivedNs;
+    sample.hostFrame = state.hostFrame;
     sample.edges = state.edges;
     sample.julianDayUtc = cigi::julianDayAt(state.sky, nowNs);
     const auto pose = poseOf(state.eye, nowNs);
@@ -52,10 +55,12 @@ class CigiSource final : public StateSource, private LinkProtocol {
   }
 
   void frameDone(const FrameReport& report) override {
+    if (silent_) return;
     const auto reply = replies_.frame(report, monotonicNs());
     if (reply) (void)socket_.sendTo(reply->message, reply->receiver);  // not sent: the next frame's says the same
   }
 
+  bool await(int timeoutMs) override { return mailbox_.await(timeoutMs); }
   bool isLive() const override { return true; }
   bool isFixed() const override { return false; }
 
@@ -78,7 +83,8 @@ class CigiSource final : public StateSource, private LinkProtocol {
     }
     session_.take(*message, nowNs, url_);
     replies_.heard(sender, message->format, session_.control(), nowNs);
-    desk_.ask(session_.takeQuestions());
+    auto questions = session_.takeQuestions();
+    if (!silent_) desk_.ask(std::move(questions));
     heard_ = true;
     if (message->rejected > 0) return fail(ErrorKind::badData, message->firstRejection);
     return {};
@@ -93,6 +99,7 @@ class CigiSource final : public StateSource, private LinkProtocol {
   const std::string url_;
   UdpSocket socket_;
   const AllowList allowed_;
+  const bool silent_;
   HostLock lock_;
   cigi::Session session_;  // these two the link thread's
   bool heard_ = false;
@@ -105,7 +112,7 @@ class CigiSource final : public StateSource, private LinkProtocol {
 }  // namespace
 
 OpenedSource openCigi(const std::string& url, const std::string& rest, const OpenProbe& openProbe) {
-  constexpr const char* kOptions[] = {"reply", "view", "database", "allow"};
+  constexpr const char* kOptions[] = {"reply", "view", "database", "allow", "interface"};
   const auto parsed = parseHostUrl(url, rest, kOptions);
   if (!parsed) return tl::unexpected(parsed.error());
 
@@ -119,7 +126,9 @@ OpenedSource openCigi(const std::string& url, const std::string& rest, const Ope
   auto allowed = AllowList::of(*parsed);
   if (!allowed) return tl::unexpected(allowed.error());
   options.allowed = std::move(*allowed);
-  if (const std::string* text = parsed->find("reply")) {
+  const std::string* const text = parsed->find("reply");
+  options.silent = text != nullptr && *text == "none";
+  if (text != nullptr && !options.silent) {
     const auto place = parseEndpoint(*text, kLoopbackAddress, url + ": reply");
     if (!place) return tl::unexpected(place.error());
     const auto peer = resolvePeer(*place);

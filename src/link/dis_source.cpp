@@ -44,6 +44,7 @@ class DisSource final : public StateSource, private LinkProtocol {
     if (newest.state->state.deadReckoning > DeadReckoning::hold) sample.carriedToNs = sample.arrivedNs + sinceNs;
     return sample;
   }
+  bool await(int timeoutMs) override { return mailbox_.await(timeoutMs); }
   bool isLive() const override { return true; }
   bool isFixed() const override { return false; }
 
@@ -90,7 +91,7 @@ Result<EntityName> parseEntityName(const std::string& text, const std::string& u
 }  // namespace
 
 OpenedSource openDis(const std::string& url, const std::string& rest) {
-  constexpr const char* kOptions[] = {"entity", "allow"};
+  constexpr const char* kOptions[] = {"entity", "allow", "interface"};
   const auto parsed = parseHostUrl(url, rest, kOptions);
   if (!parsed) return tl::unexpected(parsed.error());
   std::optional<EntityName> wanted;

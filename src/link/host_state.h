@@ -1,6 +1,8 @@
 // The mailbox through which what hosts say reaches the frame.
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -15,7 +17,8 @@ struct HostCounts {
   uint64_t lost = 0;      // gaps in the protocol's own numbering, where it has one
 };
 
-// A latest-value mailbox: one writer (the link thread), one reader (the frame).
+// A latest-value mailbox: one writer (the link thread), one reader (the frame). A state has `arrivedNs`, which tells it
+// from the one before.
 template <class State>
 class Mailbox {
  public:
@@ -25,18 +28,31 @@ class Mailbox {
   };
   // State and counts together: whoever sees a packet counted also sees what it said.
   void put(const std::optional<State>& state, const HostCounts& counts) {
-    const std::lock_guard lock(mutex_);
-    if (state) latest_.state = state;
-    latest_.counts = counts;
+    {
+      const std::lock_guard lock(mutex_);
+      latest_.counts = counts;
+      if (!state || (latest_.state && state->arrivedNs == latest_.state->arrivedNs)) return;
+      latest_.state = state;
+      isNew_ = true;
+    }
+    came_.notify_one();
   }
-  Snapshot take() const {
+  Snapshot take() {
     const std::lock_guard lock(mutex_);
+    isNew_ = false;
     return latest_;
+  }
+  // Waits for a state that has not been taken; false after the time.
+  bool await(int timeoutMs) {
+    std::unique_lock lock(mutex_);
+    return came_.wait_for(lock, std::chrono::milliseconds(timeoutMs), [this] { return isNew_; });
   }
 
  private:
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
+  std::condition_variable came_;
   Snapshot latest_;
+  bool isNew_ = false;
 };
 
 }  // namespace eye

@@ -17,7 +17,8 @@ constexpr size_t kMaxAllowed = 64;
 Result<UdpSocket> listenOn(const HostUrl& url) {
   const auto endpoint = parseEndpoint(url.place, kLoopbackAddress, url.text);
   if (!endpoint) return tl::unexpected(endpoint.error());
-  auto socket = UdpSocket::listenOn(*endpoint);
+  const std::string* const interface = url.find("interface");
+  auto socket = UdpSocket::listenOn(*endpoint, interface != nullptr ? *interface : "");
   if (!socket) return fail(socket.error().kind, url.text + ": " + socket.error().message);
   return socket;
 }

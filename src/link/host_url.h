@@ -25,7 +25,7 @@ Result<HostUrl> parseHostUrl(const std::string& text, const std::string& rest, s
 // A whole number in an option, `lowest` to `highest`; `fallback` without it.
 Result<int> numberOption(const HostUrl& url, const std::string& key, int lowest, int highest, int fallback);
 
-// The socket of the place that the URL says to listen on, loopback unless it gives an address.
+// The socket of the place that the URL says to listen on, loopback unless it gives an address; ?interface=ADDR.
 Result<UdpSocket> listenOn(const HostUrl& url);
 
 // Whose datagrams are looked at: ?allow=ADDR[,ADDR...]. Empty: everybody's.

@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "link/datagram_batch.h"
 #include "link/host_state.h"
 #include "link/udp_socket.h"
 
@@ -29,14 +30,14 @@ class LinkThread {
 
  private:
   void run(const std::stop_token& stop);
-  void drain();
+  size_t drain();
   void reject(const Error& reason, int64_t nowNs);
 
   // All of these belong to the link thread once it runs.
   const UdpSocket& socket_;
   LinkProtocol& protocol_;
   std::string name_;
-  std::vector<std::byte> buffer_;
+  DatagramBatch batch_;
   HostCounts counts_;
   int64_t nextComplaintNs_ = 0;
   std::jthread thread_;  // last: it must not start before the rest is there, and joins first

@@ -19,6 +19,7 @@ class NativeFdmSource final : public StateSource, private LinkProtocol {
     if (newest.state) sample.visibilityM = newest.state->state.visibilityM;
     return sample;
   }
+  bool await(int timeoutMs) override { return mailbox_.await(timeoutMs); }
   bool isLive() const override { return true; }
   bool isFixed() const override { return false; }
 
@@ -43,7 +44,7 @@ class NativeFdmSource final : public StateSource, private LinkProtocol {
 }  // namespace
 
 OpenedSource openNativeFdm(const std::string& url, const std::string& rest) {
-  constexpr const char* kOptions[] = {"allow"};
+  constexpr const char* kOptions[] = {"allow", "interface"};
   const auto parsed = parseHostUrl(url, rest, kOptions);
   if (!parsed) return tl::unexpected(parsed.error());
   auto allowed = AllowList::of(*parsed);

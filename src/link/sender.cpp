@@ -148,7 +148,8 @@ SendReport sendOnDemand(const DemandedSource& source, const UdpSocket& socket, c
   uint64_t order = 0;
   int64_t nextSecondNs = kSecondNs, sentNs = -kSecondNs;  // the first packet waits for nothing
   const int64_t startNs = monotonicNs();
-  bool more = true;
+  const int64_t leastNs = nsOf(source.leastS);
+  bool more = true, isOwed = false;  // owed: demanded, too early
   while (!stop && (more || !departures.empty())) {
     int64_t nowNs = monotonicNs() - startNs;
     report.elapsedS = static_cast<double>(nowNs) / kNsPerS;
@@ -161,12 +162,16 @@ SendReport sendOnDemand(const DemandedSource& source, const UdpSocket& socket, c
       sendOne(departures.top(), socket, report);
       departures.pop();
     }
-    const int64_t untilNs =
-        std::min({nextSecondNs, endNs, nowNs + kStopCheckNs, departures.empty() ? kNever : departures.top().atNs});
+    const int64_t untilNs = std::min({nextSecondNs, endNs, nowNs + kStopCheckNs, isOwed ? sentNs + leastNs : kNever,
+                                      departures.empty() ? kNever : departures.top().atNs});
     constexpr int64_t kNsPerMs = 1'000'000;
-    const bool demanded = source.awaitDemand(static_cast<int>((untilNs - nowNs + kNsPerMs - 1) / kNsPerMs));
+    if (isOwed)
+      sleepUntil(startNs + untilNs);
+    else
+      isOwed = source.awaitDemand(static_cast<int>((untilNs - nowNs + kNsPerMs - 1) / kNsPerMs)) && more;
     nowNs = monotonicNs() - startNs;
-    if (!more || (!demanded && nowNs - sentNs < kSecondNs)) continue;
+    if (!more || nowNs - sentNs < (isOwed ? leastNs : kSecondNs)) continue;
+    isOwed = false;
     auto payload = source.packetAt(static_cast<double>(nowNs) / kNsPerS);
     more = payload.has_value();
     if (!more) continue;

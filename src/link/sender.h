@@ -54,11 +54,12 @@ struct SendReport {
 SendReport sendPackets(const PacketSource& source, const UdpSocket& socket, const SendOptions& options,
                        const std::atomic<bool>& stop, const std::function<void(const SendReport&)>& everySecond);
 
-// Packets on demand: one for each time that `awaitDemand` (which waits so many milliseconds at most) returns true, and
-// one a second while it does not. `packetAt` has nothing at the end.
+// Packets on demand: one for each time that `awaitDemand` (which waits so many milliseconds at most) returns true, but
+// `leastS` after the one before, and one a second while it does not. `packetAt` has nothing at the end.
 struct DemandedSource {
   std::function<std::optional<std::vector<std::byte>>(double timeS)> packetAt;
   std::function<bool(int timeoutMs)> awaitDemand;
+  double leastS = 0;
 };
 SendReport sendOnDemand(const DemandedSource& source, const UdpSocket& socket, const SendOptions& options,
                         const std::atomic<bool>& stop, const std::function<void(const SendReport&)>& everySecond);

@@ -20,6 +20,7 @@ struct SourceSample {
   std::optional<double> julianDayUtc;  // that the host's sky shows
   ViewEdges edges;                     // what the host has said of the view
   int64_t arrivedNs = 0;               // of the newest packet; 0 without a live host
+  std::optional<uint32_t> hostFrame;   // the host's number of the newest packet, where its protocol has one
   int64_t carriedToNs = 0;             // where the source carries the pose on by the host's rates: to this moment
   bool live = false;                   // fed by packets
   bool valid = false;                  // false until the first packet of a live host
@@ -37,6 +38,8 @@ class StateSource {
   virtual ~StateSource() = default;
   // The state for the frame shown at `timeS` seconds since the start. Never blocks. Render thread.
   virtual SourceSample sample(double timeS) = 0;
+  // Of a live host: waits for a state that no frame has had; false after the time. Render thread.
+  virtual bool await(int) { return false; }
   // After each frame. Never blocks. Render thread.
   virtual void frameDone(const FrameReport&) {}
   virtual bool isLive() const = 0;

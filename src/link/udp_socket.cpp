@@ -10,6 +10,8 @@
 #include <cstring>
 #include <utility>
 
+#include "link/udp_group.h"
+
 namespace eye {
 namespace {
 
@@ -43,6 +45,18 @@ sockaddr_in addressOf(const Peer& peer) {
   return address;
 }
 
+// The interface's address, where one is named.
+Result<std::optional<uint32_t>> groupInterface(Reach reach, const std::string& interfaceAddress) {
+  if (interfaceAddress.empty()) return std::nullopt;
+  if (reach != Reach::multicast)
+    return fail(ErrorKind::usage, fmt::format("a network interface ({}) can be chosen for a multicast group, 224.0.0.0 "
+                                              "to 239.255.255.255, alone",
+                                              interfaceAddress));
+  const auto interface = resolvePeer({interfaceAddress, 0});
+  if (!interface) return tl::unexpected(interface.error());
+  return interface->address;
+}
+
 const sockaddr* asSockaddr(const sockaddr_in& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
@@ -60,12 +74,23 @@ std::string toText(const Peer& peer) {
                      peer.address & 0xff, peer.port);
 }
 
-Result<UdpSocket> UdpSocket::listenOn(const Endpoint& endpoint) {
+Result<UdpSocket> UdpSocket::listenOn(const Endpoint& endpoint, const std::string& interfaceAddress) {
   const auto address = resolve(endpoint);
   if (!address) return tl::unexpected(address.error());
   const auto fd = newSocket();
   if (!fd) return tl::unexpected(fd.error());
   UdpSocket udp(*fd);
+
+  const uint32_t listened = ntohl(address->sin_addr.s_addr);
+  const Reach reach = reachOf(listened);
+  const auto interface = groupInterface(reach, interfaceAddress);
+  if (!interface) return tl::unexpected(interface.error());
+  if (reach != Reach::one) {
+    const int shared = 1;
+    setsockopt(*fd, SOL_SOCKET, SO_REUSEADDR, &shared, sizeof(shared));
+  }
+  if (reach == Reach::multicast)
+    if (const auto joined = joinGroup(*fd, listened, *interface); !joined) return tl::unexpected(joined.error());
 
   // Room for a second of bursts while this thread does not run: 60 Hz of the largest state packets, many times over.
   const int receiveBytes = 1 << 20;
@@ -87,21 +112,36 @@ Result<UdpSocket> UdpSocket::listenOn(const Endpoint& endpoint) {
   return fail(ErrorKind::io, fmt::format("cannot listen on UDP {}: {}", place, std::strerror(problem)));
 }
 
-Result<UdpSocket> UdpSocket::connectTo(const Endpoint& endpoint) {
+Result<UdpSocket> UdpSocket::connectTo(const Endpoint& endpoint, const std::string& interfaceAddress) {
   const auto address = resolve(endpoint);
   if (!address) return tl::unexpected(address.error());
   const auto fd = newSocket();
   if (!fd) return tl::unexpected(fd.error());
   UdpSocket udp(*fd);
+
+  const Peer receiver{ntohl(address->sin_addr.s_addr), endpoint.port};
+  const Reach reach = reachOf(receiver.address);
+  const auto interface = groupInterface(reach, interfaceAddress);
+  if (!interface) return tl::unexpected(interface.error());
+  if (*interface)
+    if (const auto chosen = sendGroupsBy(*fd, **interface); !chosen) return tl::unexpected(chosen.error());
+  if (reach != Reach::one) {
+    // A connected socket would hear nobody: who answers has an address of its own.
+    const int allowed = 1;
+    setsockopt(*fd, SOL_SOCKET, SO_BROADCAST, &allowed, sizeof(allowed));
+    udp.everybody_ = receiver;
+    return udp;
+  }
   if (connect(*fd, asSockaddr(*address), sizeof(*address)) == 0) return udp;
   return fail(ErrorKind::io,
               fmt::format("cannot send UDP to {}:{}: {}", endpoint.address, endpoint.port, std::strerror(errno)));
 }
 
-UdpSocket::UdpSocket(UdpSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+UdpSocket::UdpSocket(UdpSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)), everybody_(other.everybody_) {}
 
 UdpSocket& UdpSocket::operator=(UdpSocket&& other) noexcept {
   std::swap(fd_, other.fd_);
+  std::swap(everybody_, other.everybody_);
   return *this;
 }
 
@@ -129,6 +169,11 @@ std::optional<std::span<const std::byte>> UdpSocket::receiveFrom(std::span<std::
   return buffer.first(static_cast<size_t>(bytes));
 }
 
+size_t UdpSocket::receiveMany(std::span<mmsghdr> headers) const {
+  const int count = recvmmsg(fd_, headers.data(), static_cast<unsigned>(headers.size()), MSG_DONTWAIT, nullptr);
+  return count < 0 ? 0 : static_cast<size_t>(count);
+}
+
 bool UdpSocket::sendTo(std::span<const std::byte> payload, const Peer& receiver) const {
   const sockaddr_in address = addressOf(receiver);
   return sendto(fd_, payload.data(), payload.size(), MSG_NOSIGNAL | MSG_DONTWAIT, asSockaddr(address),
@@ -136,6 +181,7 @@ bool UdpSocket::sendTo(std::span<const std::byte> payload, const Peer& receiver)
 }
 
 SendOutcome UdpSocket::send(std::span<const std::byte> payload) const {
+  if (everybody_) return sendTo(payload, *everybody_) ? SendOutcome::sent : SendOutcome::failed;
   const auto once = [&] { return ::send(fd_, payload.data(), payload.size(), MSG_NOSIGNAL); };
   const auto whole = static_cast<ssize_t>(payload.size());
   if (once() == whole) return SendOutcome::sent;

@@ -1,4 +1,4 @@
-// An IPv4 UDP socket: bound to receive, or connected to send. Move-only; closes itself.
+// An IPv4 UDP socket: bound to receive, or one that sends to a place. Move-only; closes itself.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,8 @@
 
 #include "base/error.h"
 #include "link/endpoint.h"
+
+struct mmsghdr;
 
 namespace eye {
 
@@ -33,9 +35,11 @@ enum class SendOutcome {
 
 class UdpSocket {
  public:
-  // Listens on the address; port 0 lets the system choose one (see `port`).
-  static Result<UdpSocket> listenOn(const Endpoint& endpoint);
-  static Result<UdpSocket> connectTo(const Endpoint& endpoint);
+  // Listens on the address; port 0 lets the system choose one (see `port`). A multicast group and a broadcast address
+  // any number of sockets may share, and each hears everything. `interfaceAddress` (may be empty): of the one network
+  // interface on which a group is heard, or by which it is sent to.
+  static Result<UdpSocket> listenOn(const Endpoint& endpoint, const std::string& interfaceAddress = "");
+  static Result<UdpSocket> connectTo(const Endpoint& endpoint, const std::string& interfaceAddress = "");
 
   UdpSocket(UdpSocket&& other) noexcept;
   UdpSocket& operator=(UdpSocket&& other) noexcept;
@@ -47,7 +51,9 @@ class UdpSocket {
   // kMaxDatagramBytes: what does not fit is lost.
   std::optional<std::span<const std::byte>> receive(std::span<std::byte> buffer) const;
   std::optional<std::span<const std::byte>> receiveFrom(std::span<std::byte> buffer, Peer& sender) const;
-  SendOutcome send(std::span<const std::byte> payload) const;  // of a connected socket
+  // Of those that have arrived as many as there are headers; how many. For DatagramBatch, which has the buffers.
+  size_t receiveMany(std::span<mmsghdr> headers) const;
+  SendOutcome send(std::span<const std::byte> payload) const;  // of a socket from connectTo
   // Of a listening socket, any thread. Never blocks: false when the network does not take it.
   bool sendTo(std::span<const std::byte> payload, const Peer& receiver) const;
   uint16_t port() const;  // the local one
@@ -55,6 +61,7 @@ class UdpSocket {
  private:
   explicit UdpSocket(int fd) : fd_(fd) {}
   int fd_ = -1;
+  std::optional<Peer> everybody_;  // whom it sends to, where answers come from other addresses than that
 };
 
 }  // namespace eye

@@ -21,6 +21,7 @@ class XplaneSource final : public StateSource, private LinkProtocol {
   ~XplaneSource() override { (void)socket_.sendTo(buildRposRequest(0), xplane_); }  // no more, please
 
   SourceSample sample(double) override { return liveSample(mailbox_.take()); }
+  bool await(int timeoutMs) override { return mailbox_.await(timeoutMs); }
   bool isLive() const override { return true; }
   bool isFixed() const override { return false; }
 

@@ -12,6 +12,7 @@
 #include "link/host_lock.h"
 #include "link/sender.h"
 #include "link/state_source.h"
+#include "loopback.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -21,24 +22,9 @@ using namespace eye::test;
 using namespace eye::cigi;
 using std::chrono::milliseconds;
 
-uint16_t freePort() {
-  return UdpSocket::listenOn({kLoopbackAddress, 0})->port();
-}
-
-SourceSample waitFor(StateSource& source, uint64_t packets) {
-  SourceSample sample = source.sample(0);
-  for (int i = 0; i < 1000 && sample.counts.packets < packets; ++i) {
-    std::this_thread::sleep_for(milliseconds(5));
-    sample = source.sample(0);
-  }
-  return sample;
-}
-
 Pose poseNumber(uint32_t i) {
   return {{46 + 1e-4 * i, 8, 1000.0 + i}, 10, 2, -3};
 }
-
-const std::atomic<bool> kNeverStop = false;
 
 TEST_CASE("CIGI over UDP: every message arrives, is counted, and Starts of Frame come back in the host's version") {
   for (const Version version : {Version{3, 3}, Version{4, 0}}) {

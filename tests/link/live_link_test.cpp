@@ -10,6 +10,7 @@
 #include "link/native_fdm.h"
 #include "link/sender.h"
 #include "link/state_source.h"
+#include "loopback.h"
 #include "packets.h"
 #include "telemetry/trace.h"
 
@@ -17,23 +18,6 @@ namespace eye {
 namespace {
 
 using namespace eye::test;
-
-// A port that is free at this moment.
-uint16_t freePort() {
-  return UdpSocket::listenOn({kLoopbackAddress, 0})->port();
-}
-
-// Waits until the source has seen `packets`, for at most five seconds.
-SourceSample waitFor(StateSource& source, uint64_t packets) {
-  SourceSample sample = source.sample(0);
-  for (int i = 0; i < 1000 && sample.counts.packets < packets; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    sample = source.sample(0);
-  }
-  return sample;
-}
-
-const std::atomic<bool> kNeverStop = false;
 
 TEST_CASE("every packet that is sent arrives, is counted, and the newest position is the packet's") {
   const uint16_t port = freePort();

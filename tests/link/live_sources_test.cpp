@@ -11,25 +11,13 @@
 #include "link/host_url.h"
 #include "link/state_source.h"
 #include "link/xplane.h"
+#include "loopback.h"
 #include "packets.h"
 
 namespace eye {
 namespace {
 
 using namespace eye::test;
-
-uint16_t freePort() {
-  return UdpSocket::listenOn({kLoopbackAddress, 0})->port();
-}
-
-SourceSample waitFor(StateSource& source, uint64_t packets) {
-  SourceSample sample = source.sample(0);
-  for (int i = 0; i < 1000 && sample.counts.packets < packets; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    sample = source.sample(0);
-  }
-  return sample;
-}
 
 double metresBetween(const Pose& a, const Pose& b) {
   return glm::length(ecefFromGeodetic(a.position) - ecefFromGeodetic(b.position));

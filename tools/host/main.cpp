@@ -18,9 +18,9 @@ namespace {
 using namespace eye;
 
 struct Arguments {
-  std::string protocol, to, track, scenario, pose, cigiVersion = "3.3", logLevel = "info";
+  std::string protocol, to, interface, track, scenario, pose, cigiVersion = "3.3", logLevel = "info";
   bool synchronous = false;
-  double rateHz = 60;
+  std::optional<double> rateHz;  // unset: 60, and no limit with --synchronous
   SendOptions send;
 };
 
@@ -45,15 +45,17 @@ std::string scenarioNames() {
 void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--protocol", args.protocol, "What to speak: native-fdm or cigi")->type_name("NAME")->required();
   app.add_option("--cigi-version", args.cigiVersion, "Of CIGI: 3.3 or 4.0")->type_name("V")->capture_default_str();
-  app.add_flag("--synchronous", args.synchronous, "CIGI: one message for each Start of Frame instead of --rate");
+  app.add_flag("--synchronous", args.synchronous, "CIGI: one message for each Start of Frame, --rate a second at most");
   app.add_option("--to", args.to, "Where to send")->type_name("ADDR:PORT")->required();
+  app.add_option("--interface", args.interface, "By which network interface a multicast group is sent to: its address")
+      ->type_name("ADDR");
   auto* what = app.add_option_group("What to fly (one of)");
   what->add_option("--track", args.track, "Recording: CSV, IGC, or a pcap, which is sent packet by packet as recorded")
       ->type_name("FILE");
   what->add_option("--scenario", args.scenario, "Built-in flight: " + scenarioNames())->type_name("NAME");
   what->add_option("--pose", args.pose, "Stand still at lat,lon,alt,heading,pitch,roll")->type_name("P");
   what->require_option(1);
-  app.add_option("--rate", args.rateHz, "Packets a second")->type_name("HZ")->capture_default_str();
+  app.add_option("--rate", args.rateHz, "Packets a second; default 60")->type_name("HZ");
   app.add_option("--duration", args.send.durationS, "Stop after this many seconds")->type_name("S");
   app.add_flag("--loop", args.send.loop, "Begin again at the end");
   auto* bad = app.add_option_group("A bad link");
@@ -71,6 +73,7 @@ void declareOptions(CLI::App& app, Arguments& args) {
       "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --scenario low-level --loop\n"
       "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --track flight.pcap\n"
       "  eyepoint-host --protocol cigi --cigi-version 4.0 --to 127.0.0.1:8000 --scenario orbit --synchronous\n"
+      "  eyepoint-host --protocol cigi --to 239.255.69.89:8000 --scenario low-level --loop     several channels\n"
       "  eyepoint-host --protocol native-fdm --to 10.0.0.2:5550 --track glider.igc --jitter 20 --loss 0.01");
 }
 
@@ -90,8 +93,8 @@ Result<void> check(const Arguments& args) {
     return fail(ErrorKind::usage, fmt::format("--cigi-version '{}' is neither 3.3 nor 4.0", args.cigiVersion));
   if (args.synchronous && !speaksCigi(args))
     return fail(ErrorKind::usage, "--synchronous needs --protocol cigi: native-fdm has no answers to wait for");
-  if (!(args.rateHz >= 0.1 && args.rateHz <= 10'000))
-    return fail(ErrorKind::usage, fmt::format("--rate {} is outside 0.1 to 10000 Hz", args.rateHz));
+  if (args.rateHz && !(*args.rateHz >= 0.1 && *args.rateHz <= 10'000))
+    return fail(ErrorKind::usage, fmt::format("--rate {} is outside 0.1 to 10000 Hz", *args.rateHz));
   if (args.send.durationS && !(*args.send.durationS > 0 && *args.send.durationS <= 1e7))
     return fail(ErrorKind::usage, fmt::format("--duration {} is outside 0 to 10000000 s", *args.send.durationS));
   return checkBadLink(args.send.badLink);
@@ -180,15 +183,15 @@ class Ticker {
 
 SendReport send(const Arguments& args, Flight flight, const UdpSocket& socket, cigi::ReplyListener* replies) {
   Ticker ticker(args.to, replies);
+  const double rateHz = args.rateHz.value_or(60);
   if (!flight.packets.empty())
     return sendPackets(packetsFromRecording(std::move(flight.packets)), socket, args.send, stopAsked, ticker);
   if (!speaksCigi(args))
-    return sendPackets(packetsFromPoses(flight.poseAt, flight.durationS, args.rateHz), socket, args.send, stopAsked,
-                       ticker);
+    return sendPackets(packetsFromPoses(flight.poseAt, flight.durationS, rateHz), socket, args.send, stopAsked, ticker);
   const auto igFrame = [replies] { return replies->igFrame(); };
   if (!args.synchronous)
-    return sendPackets(cigiPacketsFromPoses(flight.poseAt, flight.durationS, args.rateHz, versionOf(args), igFrame),
-                       socket, args.send, stopAsked, ticker);
+    return sendPackets(cigiPacketsFromPoses(flight.poseAt, flight.durationS, rateHz, versionOf(args), igFrame), socket,
+                       args.send, stopAsked, ticker);
   uint32_t number = 0;
   const auto packetAt = [&](double timeS) -> std::optional<std::vector<std::byte>> {
     if (timeS > flight.durationS && !args.send.loop) return std::nullopt;
@@ -196,7 +199,8 @@ SendReport send(const Arguments& args, Flight flight, const UdpSocket& socket, c
     return cigi::hostMessage(versionOf(args), {number++, igFrame(), timeS, flight.poseAt(atS)});
   };
   const auto awaitDemand = [replies](int timeoutMs) { return replies->awaitStart(timeoutMs); };
-  return sendOnDemand({packetAt, awaitDemand}, socket, args.send, stopAsked, ticker);
+  return sendOnDemand({packetAt, awaitDemand, args.rateHz ? 1 / *args.rateHz : 0}, socket, args.send, stopAsked,
+                      ticker);
 }
 
 int fly(Arguments args) {
@@ -205,7 +209,7 @@ int fly(Arguments args) {
   if (!endpoint) return complain(endpoint.error());
   auto flight = flightOf(args);
   if (!flight) return complain(flight.error());
-  const auto socket = UdpSocket::connectTo(*endpoint);
+  const auto socket = UdpSocket::connectTo(*endpoint, args.interface);
   if (!socket) return complain(socket.error());
   std::optional<cigi::ReplyListener> replies;
   if (speaksCigi(args)) replies.emplace(*socket);
