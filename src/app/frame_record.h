@@ -35,6 +35,7 @@ struct FrameRecord {
   double coarsening = 1;        // of the tolerance, by the pager
   PredictionRecord prediction;  // horizonS 0: none
   HostCounts host;
+  std::optional<uint32_t> hostFrame;  // the host's number of the newest packet, where its protocol has one
   double hostAgeMs = -1;  // from the newest packet's arrival to the frame's completion; negative: no packet yet
 };
 

@@ -80,8 +80,13 @@ void Sources::frameDone(const FrameReport& report) {
   for (const auto& source : sources_) source->frameDone(report);
 }
 
-bool Sources::anyLive() const {
-  return std::any_of(sources_.begin(), sources_.end(), [](const auto& source) { return source->isLive(); });
+bool Sources::await(int timeoutMs) {
+  const auto live = std::ranges::find_if(sources_, [](const auto& source) { return source->isLive(); });
+  return live != sources_.end() && (*live)->await(timeoutMs);
+}
+
+size_t Sources::liveCount() const {
+  return static_cast<size_t>(std::ranges::count_if(sources_, [](const auto& source) { return source->isLive(); }));
 }
 
 bool Sources::allFixed() const {
@@ -212,7 +217,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   if (host.carriedToNs != 0) observed.arrivedNs = host.carriedToNs;  // the moment that the pose is of
   if (heard) tracker_.observe(observed, hostPose_, nowS);
   const DisplayedEye eye = heard ? tracker_.eye() : DisplayedEye{.pose = hostPose_};
-  pose_ = eye.pose;
+  pose_ = channelPose(eye.pose, options_);
   view_ = currentView(pose_, host.edges);
   const Lighting lighting = currentLighting(host);
   // The keys switch what the options say.
@@ -296,6 +301,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   record.coarsening = pager_->coarsening();
   record.prediction = tracker_.record(record.pace.memoryS);
   record.host = host.counts;
+  record.hostFrame = host.hostFrame;
   if (host.arrivedNs != 0) record.hostAgeMs = static_cast<double>(endedNs - host.arrivedNs) * 1e-6;
   sources_.frameDone({record.frameMs > kFrameBudgetMs, record.selection.missing > 0});
   overlay_.add(record);

@@ -23,7 +23,9 @@ class Sources {
   static Sources of(std::unique_ptr<StateSource> source);
   SourceSample sample(double timeS);
   void frameDone(const FrameReport& report);
-  bool anyLive() const;
+  bool await(int timeoutMs);  // of the one that is live: StateSource::await
+  size_t liveCount() const;
+  bool anyLive() const { return liveCount() > 0; }
   bool allFixed() const;
   const std::string& description() const { return description_; }
 
@@ -56,6 +58,9 @@ class ImageGenerator {
   const Selection& selection() const { return selection_; }  // of the last frame; its nodes are the terrain's
   const TerrainCache& terrain() const { return pager_->cache(); }
 
+  // Until the host has said something new, or the time is over.
+  void awaitHost(int timeoutMs) { sources_.await(timeoutMs); }
+  size_t liveHosts() const { return sources_.liveCount(); }
   bool sourceFinished() const { return finished_; }
   bool sourceIsFixed() const { return sources_.allFixed(); }
   bool sourceIsLive() const { return sources_.anyLive(); }
@@ -80,7 +85,7 @@ class ImageGenerator {
   int settledFrames_ = 0;  // drawn behind one another with nothing missing
 
   uint64_t number_ = 0;
-  Pose hostPose_, pose_;  // as the host says; as it is drawn
+  Pose hostPose_, pose_;  // as the host says; of the view that is drawn
   bool finished_ = false;
   View view_;
   Selection selection_;

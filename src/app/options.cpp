@@ -120,14 +120,27 @@ void setFrustum(Options& options, const std::string& text) {
   options.frustumDeg = std::array<double, 4>{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
 }
 
+void setViewOffset(Options& options, const std::string& text) {
+  const auto n = splitNumbers(text, ',', 3);
+  if (!n || std::abs((*n)[0]) > 360 || std::abs((*n)[1]) > 90 || std::abs((*n)[2]) > 360)
+    throw CLI::ValidationError("--view-offset",
+                               fmt::format("'{}' is no offset; give heading,pitch,roll in degrees, within 360, 90 and "
+                                           "360, such as -60,0,0 for a view to the left",
+                                           text));
+  options.viewOffsetDeg = std::array<double, 3>{(*n)[0], (*n)[1], (*n)[2]};
+}
+
 void setRate(Options& options, const std::string& text) {
+  options.rateOfHost = text == "host";
+  options.rateHz.reset();
+  if (options.rateOfHost) return;
   if (text == "max") {
     options.rateHz = std::numeric_limits<double>::infinity();
     return;
   }
   const auto number = splitNumbers(text, ' ', 1);
   if (!number || (*number)[0] <= 0 || (*number)[0] > 1000)
-    throw CLI::ValidationError("--rate", fmt::format("'{}' is no rate; give hertz in (0, 1000] or max", text));
+    throw CLI::ValidationError("--rate", fmt::format("'{}' is no rate; give hertz in (0, 1000], max or host", text));
   options.rateHz = (*number)[0];
 }
 
@@ -196,6 +209,11 @@ void addView(CLI::App& app, Options& o) {
          "Off-axis view: left,right,bottom,top half-angles, signed degrees")
       ->type_name("L,R,B,T")
       ->group(group);
+  app.add_option_function<std::string>(
+         "--view-offset", [&o](const std::string& t) { setViewOffset(o, t); },
+         "Where this channel looks from the aircraft's nose: heading,pitch,roll, degrees")
+      ->type_name("H,P,R")
+      ->group(group);
   app.add_option("--near", o.nearM, "Near plane, metres; default 1")
       ->type_name("M")
       ->check(within(0.01, 1000.0))
@@ -225,8 +243,9 @@ void addRun(CLI::App& app, Options& o) {
       ->group(group);
   app.add_option_function<std::string>(
          "--rate", [&o](const std::string& t) { setRate(o, t); },
-         "Pace of frames: hertz or max; default 60, max with a fixed pose or --offline")
-      ->type_name("HZ/max")
+         "Pace of frames: hertz, max, or host: one for each message of a live host; default 60,\n"
+         "max with a fixed pose or --offline")
+      ->type_name("HZ/max/host")
       ->group(group);
   app.add_option_function<std::string>(
          "--redraw", [&o](const std::string& t) { o.redrawAlways = t == "always"; },
@@ -429,13 +448,16 @@ std::string Options::settingsLine() const {
   const std::string map = depthMap == DepthMapMode::off     ? "off"
                           : depthMap == DepthMapMode::fixed ? fmt::format("{}x{}", depthMapPx.x, depthMapPx.y)
                                                             : "auto";
+  const std::string offset = viewOffsetDeg ? fmt::format(" view-offset={},{},{}", (*viewOffsetDeg)[0],
+                                                         (*viewOffsetDeg)[1], (*viewOffsetDeg)[2])
+                                           : "";
   const std::string angles = frustumDeg ? fmt::format("frustum={},{},{},{}", (*frustumDeg)[0], (*frustumDeg)[1],
                                                       (*frustumDeg)[2], (*frustumDeg)[3])
                                         : fmt::format("fov={}", fovDeg);
   return fmt::format(
-      "size={}x{} {} near={} sse={} culling={} depth-map={} selector={}{} horizon={} predictor={} cache-ram={} "
+      "size={}x{} {}{} near={} sse={} culling={} depth-map={} selector={}{} horizon={} predictor={} cache-ram={} "
       "cache-gpu={} offline={} redraw={}",
-      widthPx, heightPx, angles, nearM, ssePx, nameOf(culling), map,
+      widthPx, heightPx, angles, offset, nearM, ssePx, nameOf(culling), map,
       selectorMode == SelectorMode::paper ? "paper" : "adaptive", selectorRules.empty() ? "" : ":" + selectorRules,
       horizon == HorizonTest::paper ? "paper" : "ellipsoid",
       predictor == PredictorMode::none ? "none" : fmt::format("kalman-{}", predictorStates), cacheRamMiB, cacheGpuMiB,

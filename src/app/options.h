@@ -28,7 +28,8 @@ struct Options {
   // The channel's view.
   int widthPx = 800, heightPx = 600;
   double fovDeg = 60;
-  std::optional<std::array<double, 4>> frustumDeg;  // left, right, bottom, top
+  std::optional<std::array<double, 4>> frustumDeg;     // left, right, bottom, top
+  std::optional<std::array<double, 3>> viewOffsetDeg;  // heading, pitch, roll of the view against the aircraft
   double nearM = 1;
 
   // The window.
@@ -39,6 +40,7 @@ struct Options {
   std::optional<uint64_t> frames;
   std::optional<double> durationS;
   std::optional<double> rateHz;  // unset: the default of the source; infinity: "max"
+  bool rateOfHost = false;       // a frame for each message of the host
   bool redrawAlways = false, offline = false;
 
   // Quality and budgets.

@@ -21,6 +21,9 @@ namespace {
 constexpr double kOfflineRateHz = 60;
 constexpr double kDisplayRateHz = 60;  // a window's, unless told otherwise: it never spins
 
+// With --rate host: while the host is silent terrain still comes in, and the window wants to be answered.
+constexpr int kSilentHostMs = 50;
+
 volatile std::sig_atomic_t stopRequested = 0;
 void requestStop(int) {
   stopRequested = 1;
@@ -110,7 +113,9 @@ Flight fly(const Options& options, ImageGenerator& generator, std::optional<Stat
       break;
     if (last || stopRequested != 0 || (limits.endWithSource && generator.sourceFinished())) break;
     if (!options.headless && !renderer.pollWindow()) break;
-    if (!options.headless && !*shown)
+    if (options.rateOfHost)
+      generator.awaitHost(kSilentHostMs);
+    else if (!options.headless && !*shown)
       unseenPace.wait();
     else
       pace.wait();
@@ -176,6 +181,12 @@ Result<void> run(const Options& given, int64_t startedNs) {
   Result<std::unique_ptr<ImageGenerator>> created = ImageGenerator::create(options);
   if (!created) return tl::unexpected(created.error());
   ImageGenerator& generator = **created;
+
+  if (options.rateOfHost && (options.offline || generator.liveHosts() != 1))
+    return fail(
+        ErrorKind::usage,
+        fmt::format("--rate host needs one live host, such as --host cigi://:8000, {}",
+                    options.offline ? "and no --offline" : fmt::format("and there are {}", generator.liveHosts())));
 
   const double defaultRateHz =
       generator.sourceIsFixed() || options.offline ? std::numeric_limits<double>::infinity() : kDisplayRateHz;

@@ -88,6 +88,7 @@ Json jsonOf(const FrameRecord& r) {
                {{"packets", r.host.packets},
                 {"rejected", r.host.rejected},
                 {"lost", r.host.lost},
+                {"frame", r.hostFrame ? Json(*r.hostFrame) : Json(nullptr)},
                 {"delay_ms", r.eye.delayMs},
                 {"silent", r.eye.silent},
                 {"age_ms", r.hostAgeMs < 0 ? Json(nullptr) : Json(r.hostAgeMs)}}}};

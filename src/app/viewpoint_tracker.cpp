@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "link/angles.h"
+#include "link/eye_chain.h"
 
 namespace eye {
 namespace {
@@ -44,6 +45,12 @@ PredictorOptions predictorOptions(const Options& options) {
 }
 
 }  // namespace
+
+Pose channelPose(const Pose& aircraft, const Options& options) {
+  if (!options.viewOffsetDeg) return aircraft;
+  const auto& [headingDeg, pitchDeg, rollDeg] = *options.viewOffsetDeg;
+  return poseFromBody(aircraft.position, ecefFromBody(aircraft) * parentFromBody(headingDeg, pitchDeg, rollDeg));
+}
 
 ViewpointTracker::ViewpointTracker(const Options& options) : options_(options), predictor_(predictorOptions(options)) {}
 
@@ -128,7 +135,7 @@ ViewpointAhead ViewpointTracker::ahead(const Vec3d& nowForwardEcef, double inS) 
           prediction.ecefM,
           prediction.pose.position.altM,
           std::min(prediction.radius98M, kGreatestRadiusM),
-          ecefFromBody(prediction.pose)[0],
+          ecefFromBody(channelPose(prediction.pose, options_))[0],
           turnRateRadS};
 }
 
@@ -142,7 +149,7 @@ LookAhead ViewpointTracker::lookAhead(const View& view) const {
   look.region.ssePx = options_.ssePx;
   look.region.halfFovRad = halfFovRad(view.frustum);
   look.region.widening = options_.regionWidening;
-  const Vec3d forwardEcef = ecefFromBody(pose_)[0];
+  const Vec3d forwardEcef = ecefFromBody(channelPose(pose_, options_))[0];
   look.at = [this, forwardEcef](double inS) { return ahead(forwardEcef, inS); };
   return look;
 }

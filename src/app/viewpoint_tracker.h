@@ -28,6 +28,9 @@ struct DisplayedEye {
   bool silent = false;  // the host has said nothing for so long that the eye waits where it was last foreseen
 };
 
+// Where a channel looks from the aircraft's eye: --view-offset.
+Pose channelPose(const Pose& aircraft, const Options& options);
+
 class ViewpointTracker {
  public:
   // The options must live longer.

@@ -77,6 +77,9 @@ TEST_CASE("bad usage is one line and exit status 2") {
                                                   {"--frustum", "-10,10,-5"},
                                                   {"--rate", "-3"},
                                                   {"--rate", "fast"},
+                                                  {"--view-offset", "-60"},
+                                                  {"--view-offset", "0,91,0"},
+                                                  {"--view-offset", "nan,0,0"},
                                                   {"--vsync", "maybe"},
                                                   {"--sse", "0"},
                                                   {"--culling", "all"},
@@ -190,6 +193,25 @@ TEST_CASE("every documented key of the example configuration is known") {
   const ParsedOptions parsed = parse({"--config", EYE_SOURCE_DIR "/config/eyepoint.toml"});
   INFO(parsed.text);
   CHECK_FALSE(parsed.exitStatus);
+}
+
+TEST_CASE("the example channels look left, ahead and right, and one of them answers") {
+  const std::pair<std::string, double> channels[] = {{"left", -60}, {"centre", 0}, {"right", 60}};
+  for (const auto& [name, headingDeg] : channels) {
+    const std::string path = EYE_SOURCE_DIR "/config/channel-" + name + ".toml";
+    const ParsedOptions parsed = parse({"--config", path.c_str()});
+    INFO(name << ": " << parsed.text);
+    REQUIRE_FALSE(parsed.exitStatus);
+    const Options& o = parsed.options;
+    CHECK(o.viewOffsetDeg == std::array<double, 3>{headingDeg, 0, 0});
+    CHECK(o.fovDeg == 60);
+    CHECK(o.rateOfHost);
+    CHECK(o.hostDelay == HostDelayMode::off);
+    REQUIRE(o.hosts.size() == 1);
+    CHECK(o.hosts[0].ends_with("?reply=none") == (name != "centre"));
+    CHECK(parse({"--config", path.c_str(), "--rate", "30"}).options.rateHz == 30);
+    CHECK_FALSE(parse({"--config", path.c_str(), "--rate", "30"}).options.rateOfHost);
+  }
 }
 
 TEST_CASE("an option wins over the file's keys that say the same thing in another way") {

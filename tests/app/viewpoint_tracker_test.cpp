@@ -112,6 +112,26 @@ TEST_CASE("the delay: as asked for, and by default what jitter goes beyond 50 ms
   CHECK(delayMs <= 100);
 }
 
+TEST_CASE("a channel looks from the aircraft's nose by its offset, in the aircraft's frame") {
+  Options options;
+  const Pose level{{49, 20, 3000}, 90, 0, 0}, banked{{49, 20, 3000}, 90, 0, 90};
+  CHECK(channelPose(level, options) == level);
+  const auto turned = [&](const Pose& aircraft, std::array<double, 3> offsetDeg) {
+    options.viewOffsetDeg = offsetDeg;
+    return channelPose(aircraft, options);
+  };
+  const auto isPose = [](const Pose& pose, double headingDeg, double pitchDeg, double rollDeg) {
+    CAPTURE(pose.headingDeg, pose.pitchDeg, pose.rollDeg);
+    CHECK(pose.headingDeg == Approx(headingDeg).margin(1e-9));
+    CHECK(pose.pitchDeg == Approx(pitchDeg).margin(1e-9));
+    CHECK(pose.rollDeg == Approx(rollDeg).margin(1e-9));
+  };
+  isPose(turned(level, {-60, 0, 0}), 30, 0, 0);
+  isPose(turned(level, {-60, 20, 5}), 30, 20, 5);
+  isPose(turned(banked, {30, 0, 0}), 90, -30, 90);  // the right wing points down
+  isPose(turned(banked, {0, 30, 0}), 120, 0, 90);   // and the top of the head to the right
+}
+
 TEST_CASE("an aircraft that stands is drawn where it stands, and so is one just heard of") {
   const Options options = withDelay(HostDelayMode::automatic);
   ViewpointTracker tracker(options);

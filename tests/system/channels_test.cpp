@@ -11,11 +11,11 @@ namespace {
 constexpr int kHeight = 200, kChannelWidth = 160, kChannels = 3;
 
 RasterImage draw(const std::string& database, const std::string& name, int widthPx, const std::string& pose,
-                 const std::vector<std::string>& more) {
+                 const std::vector<std::string>& more, int heightPx = kHeight) {
   const std::string map = testFile(name + ".tif");
   std::vector<std::string> words{
       "--headless",     "--offline", "--terrain",   database,
-      "--pose",         pose,        "--size",      std::to_string(widthPx) + "x" + std::to_string(kHeight),
+      "--pose",         pose,        "--size",      std::to_string(widthPx) + "x" + std::to_string(heightPx),
       "--distance-map", map,         "--log-level", "error"};
   words.insert(words.end(), more.begin(), more.end());
   const ProgramRun run = runProgram("eyepoint", words);
@@ -23,7 +23,7 @@ RasterImage draw(const std::string& database, const std::string& name, int width
   REQUIRE(run.exitCode == 0);
   RasterImage image = readRaster(map);
   REQUIRE(image.widthPx == widthPx);
-  REQUIRE(image.heightPx == kHeight);
+  REQUIRE(image.heightPx == heightPx);
   return image;
 }
 
@@ -61,6 +61,53 @@ TEST_CASE("channels: three frusta side by side make the wide picture") {
   CHECK(sky < kPixels * 19 / 20);
   CHECK(otherSky < kPixels / 1000);
   CHECK(otherDistance < kPixels / 200);
+}
+
+TEST_CASE("channels: views turned against the aircraft's nose see what the wide picture has there") {
+  const std::string database = carpathiaDatabase();
+  if (database.empty()) return;
+  constexpr double kDeg = 57.29577951308232, kTurnDeg = 30;
+  const std::string pose = "49.25,20.1,2600,180,-5,7";
+  const double wideUp = 1.2;  // a turned view's corners lie beyond its own height in the wide picture
+  const int wideHeight = 480, wideWidth = static_cast<int>(wideHeight * std::tan(60 / kDeg) / wideUp);
+  const RasterImage wide = draw(database, "channels_flat", wideWidth, pose,
+                                {frustum(-std::tan(60 / kDeg), std::tan(60 / kDeg), wideUp)}, wideHeight);
+  for (const int side : {-1, 1}) {
+    const double c = std::cos(side * kTurnDeg / kDeg), s = std::sin(side * kTurnDeg / kDeg);
+    const RasterImage turned = draw(database, "channels_turned", kChannelWidth, pose,
+                                    {"--fov", "60", "--view-offset", std::to_string(side * kTurnDeg) + ",0,0"});
+    const double across = std::tan(30 / kDeg), down = across * kHeight / kChannelWidth;
+    int checked = 0, different = 0;
+    for (int row = 0; row < kHeight; ++row) {
+      for (int column = 0; column < kChannelWidth; ++column) {
+        // The pixel's ray: ahead, right and down of the view, then of the nose.
+        const double right = ((column + 0.5) / kChannelWidth * 2 - 1) * across;
+        const double below = ((row + 0.5) / kHeight * 2 - 1) * down;
+        const double ahead = c - s * right, x = (s + c * right) / ahead, y = below / ahead;
+        const int wideColumn = static_cast<int>((x / std::tan(60 / kDeg) + 1) / 2 * wideWidth);
+        const int wideRow = static_cast<int>((y / wideUp + 1) / 2 * wideHeight);
+        if (wideColumn < 1 || wideColumn + 1 >= wideWidth || wideRow < 1 || wideRow + 1 >= wideHeight) continue;
+        // Its distance is among those of the wide picture's pixels round about, or is sky where one of them is.
+        const float here = turned.at(0, row, column);
+        float nearest = INFINITY, farthest = 0;
+        bool skyNear = false;
+        for (int dy = -1; dy <= 1; ++dy) {
+          for (int dx = -1; dx <= 1; ++dx) {
+            const float value = wide.at(0, wideRow + dy, wideColumn + dx);
+            skyNear = skyNear || std::isnan(value);
+            if (std::isnan(value)) continue;
+            nearest = std::min(nearest, value);
+            farthest = std::max(farthest, value);
+          }
+        }
+        ++checked;
+        different += std::isnan(here) ? !skyNear : here < nearest * 0.995f || here > farthest * 1.005f;
+      }
+    }
+    CAPTURE(side, checked, different);
+    CHECK(checked > kHeight * kChannelWidth * 9 / 10);
+    CHECK(different < checked / 100);
+  }
 }
 
 TEST_CASE("horizon: both tests and none give the same picture") {

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <future>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "link/cigi_host.h"
 #include "link/track_file.h"
-#include "link/udp_socket.h"
+#include "system/live_run.h"
 #include "system/program.h"
 #include "system/wgs84.h"
 
@@ -55,16 +52,14 @@ TEST_CASE("CIGI: a recorded session over UDP drives the picture in both versions
     }
     const std::string stats = testFile("cigi.jsonl");
     std::filesystem::remove(stats);
-    const uint16_t port = UdpSocket::listenOn({kLoopbackAddress, 0})->port();
+    const uint16_t port = freePort();
     const std::string address = fmt::format("127.0.0.1:{}", port);
     auto flight = std::async(std::launch::async, [&] {
       return runProgram("eyepoint",
                         {"--headless", "--terrain", database, "--host", "cigi://" + address, "--stats", stats, "--size",
                          "320x240", "--duration", fmt::format("{}", kSeconds + 5), "--log-level", "error"});
     });
-    const std::string listening = fmt::format("0100007F:{:04X}", port);
-    for (int i = 0; i < 500 && readText("/proc/net/udp").find(listening) == std::string::npos; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    REQUIRE(awaitListeners("127.0.0.1", port));
     const ProgramRun host =
         runProgram("eyepoint-host", {"--protocol", "cigi", "--cigi-version", version, "--to", address, "--track",
                                      capture, "--duration", fmt::format("{}", kSeconds)});
@@ -73,9 +68,7 @@ TEST_CASE("CIGI: a recorded session over UDP drives the picture in both versions
     REQUIRE(host.exitCode == 0);
     REQUIRE(drawn.exitCode == 0);
 
-    std::vector<nlohmann::json> frames;
-    std::ifstream in(stats);
-    for (std::string line; std::getline(in, line);) frames.push_back(nlohmann::json::parse(line));
+    const std::vector<nlohmann::json> frames = linesOf(stats);
     REQUIRE(frames.size() > 100);
     const nlohmann::json& counts = frames.back()["host"];
     const std::string said = host.out + host.err;

@@ -1,21 +1,15 @@
 // A recorded take-off over UDP at real time: every packet arrives and is counted, and what is drawn is where a packet
 // says.
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <bit>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <future>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "system/live_run.h"
 #include "system/program.h"
 #include "system/wgs84.h"
 
@@ -23,19 +17,6 @@ namespace eye::truth {
 namespace {
 
 constexpr double kSeconds = 6;
-
-// A UDP port of the loopback that nobody has now.
-int freePort() {
-  const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  REQUIRE(bind(descriptor, reinterpret_cast<sockaddr*>(&address), size) == 0);
-  REQUIRE(getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0);
-  close(descriptor);
-  return ntohs(address.sin_port);
-}
 
 double bigEndianDouble(const std::string& bytes, size_t at) {
   uint64_t value = 0;
@@ -65,16 +46,6 @@ std::vector<Place> positionsIn(const std::string& capture) {
   return places;
 }
 
-std::vector<nlohmann::json> linesOf(const std::string& path) {
-  std::vector<nlohmann::json> lines;
-  std::ifstream in(path);
-  for (std::string line; std::getline(in, line);) {
-    auto value = nlohmann::json::parse(line, nullptr, false);
-    if (!value.is_discarded()) lines.push_back(std::move(value));
-  }
-  return lines;
-}
-
 }  // namespace
 
 TEST_CASE("replay: a take-off over UDP drives the picture, no packet lost, position to the millimetre") {
@@ -86,17 +57,14 @@ TEST_CASE("replay: a take-off over UDP drives the picture, no packet lost, posit
   }
   const std::string stats = testFile("replay.jsonl");
   std::filesystem::remove(stats);
-  const std::string address = fmt::format("127.0.0.1:{}", freePort());
+  const uint16_t port = freePort();
+  const std::string address = fmt::format("127.0.0.1:{}", port);
   auto flight = std::async(std::launch::async, [&] {
     return runProgram("eyepoint",
                       {"--headless", "--terrain", database, "--host", "native-fdm://" + address, "--stats", stats,
                        "--size", "320x240", "--duration", fmt::format("{}", kSeconds + 6), "--log-level", "error"});
   });
-  // It listens once the run has begun; its statistics are buffered, so its listening is waited for in /proc.
-  const std::string listening = fmt::format("0100007F:{:04X}", std::stoi(address.substr(address.find(':') + 1)));
-  for (int i = 0; i < 500 && readText("/proc/net/udp").find(listening) == std::string::npos; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  REQUIRE(readText("/proc/net/udp").find(listening) != std::string::npos);
+  REQUIRE(awaitListeners("127.0.0.1", port));
 
   const ProgramRun host = runProgram("eyepoint-host", {"--protocol", "native-fdm", "--to", address, "--track", capture,
                                                        "--duration", fmt::format("{}", kSeconds)});
