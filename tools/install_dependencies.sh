@@ -14,6 +14,7 @@ build_and_fly=(
 )
 tests_only=(
   clang-format clang-tidy shellcheck # the house style
+  dpkg-dev file                      # the Debian package
   sqlite3                            # damages databases on purpose
   tshark                             # judges the packets that are sent
   vulkan-validationlayers

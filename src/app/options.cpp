@@ -12,6 +12,7 @@
 
 #include "app/config_file.h"
 #include "base/nearest_word.h"
+#include "base/version.h"
 
 namespace eye {
 namespace {
@@ -478,7 +479,7 @@ ParsedOptions parseOptions(int argc, const char* const* argv) {
       "  eyepoint --headless --offline --pose 49.25,20.1,2600,180,0,0 --terrain tatra.eyt --screenshot tatra.png");
   std::string config;
   app.add_option("--config", config, "TOML file with a key for each option; the command line wins")->type_name("FILE");
-  app.set_version_flag("--version", std::string("eyepoint ") + EYE_VERSION);
+  app.set_version_flag("--version", versionLine("eyepoint"));
   addTerrainAndHost(app, options);
   addView(app, options);
   addRun(app, options);

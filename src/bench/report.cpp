@@ -36,10 +36,6 @@ std::string machineLine() {
   return fmt::format("{}, {} cores", model, sysconf(_SC_NPROCESSORS_ONLN));
 }
 
-std::string commitLine() {
-  return EYE_COMMIT;
-}
-
 std::string loadLine() {
   double load = 0;
   return getloadavg(&load, 1) == 1 ? fmt::format("{:.1f}", load) : "unknown";

@@ -56,9 +56,7 @@ struct Report {
   std::vector<SuiteReport> suites{};
 };
 
-// "AMD EPYC ..., 2 cores", and the commit that was configured.
-std::string machineLine();
-std::string commitLine();
+std::string machineLine();  // "AMD EPYC ..., 2 cores"
 std::string loadLine();  // of the last minute: what else the machine does
 
 std::string reportJson(const Report& report);

@@ -118,7 +118,8 @@ TEST_CASE("help teaches and version tells") {
   CHECK(help.exitStatus == 0);
   for (const char* word : {"--terrain", "--host", "--pose", "--sse", "Examples:", "native-fdm://"})
     CHECK(help.text.find(word) != std::string::npos);
-  CHECK(parse({"--version"}).text.rfind("eyepoint ", 0) == 0);
+  CHECK(parse({"--version"}).text.rfind("eyepoint 0.", 0) == 0);
+  CHECK(parse({"--version"}).text.find("(commit ") != std::string::npos);
 }
 
 TEST_CASE("the configuration file gives what the command line leaves out") {

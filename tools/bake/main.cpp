@@ -10,6 +10,7 @@
 
 #include "bake/bake_job.h"
 #include "bake/demo_terrain.h"
+#include "base/version.h"
 #include "inspect.h"
 #include "progress.h"
 
@@ -158,7 +159,7 @@ int report(const Result<void>& result) {
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{kAbout, "eyepoint-bake"};
-  app.set_version_flag("--version", std::string("eyepoint-bake ") + EYE_VERSION);
+  app.set_version_flag("--version", versionLine("eyepoint-bake"));
   app.add_option("--log-level", arguments.logLevel, "trace, debug, info, warn, error or off (default info)")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
       ->type_name("LEVEL");

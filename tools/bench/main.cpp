@@ -9,6 +9,7 @@
 #include "app/process_setup.h"
 #include "base/nearest_word.h"
 #include "base/progress_line.h"
+#include "base/version.h"
 #include "bench/suites.h"
 
 namespace {
@@ -51,7 +52,7 @@ void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--log-level", args.logLevel, "What is printed")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
       ->capture_default_str();
-  app.set_version_flag("--version", std::string("eyepoint-bench ") + EYE_VERSION);
+  app.set_version_flag("--version", versionLine("eyepoint-bench"));
   app.footer("Suites:\n" + suiteNames() +
              "\nExamples:\n"
              "  eyepoint-bench culling --terrain tatra.eyt --out culling\n"
@@ -82,7 +83,7 @@ Result<void> measure(const Arguments& args) {
   if (!chosen) return tl::unexpected(chosen.error());
   Report report{.machine = machineLine(),
                 .device = {},
-                .commit = commitLine(),
+                .commit = sourceCommit(),
                 .settings = fmt::format("{}{}", args.options.terrain.empty() ? "embedded demo" : args.options.terrain,
                                         args.options.quick ? ", quick" : ""),
                 .suites = {}};

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "base/version.h"
 #include "link/cigi_host.h"
 #include "link/scenario.h"
 #include "link/sender.h"
@@ -67,7 +68,7 @@ void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--log-level", args.logLevel, "What is printed")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
       ->capture_default_str();
-  app.set_version_flag("--version", std::string("eyepoint-host ") + EYE_VERSION);
+  app.set_version_flag("--version", versionLine("eyepoint-host"));
   app.footer(
       "Examples:\n"
       "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --scenario low-level --loop\n"
