@@ -25,6 +25,25 @@ sanitize() {
   for name in "$@"; do "build/$preset/bin/test_$name" --durations no; done
 }
 
+# All threads at once: a live host, the pager short of memory, a minute at 300 m/s through mountains.
+fly_under_tsan() {
+  local terrain=build/release/testdata/carpathia.eyt host=127.0.0.1:15599 track=build/tsan/track.csv sender
+  ctest --test-dir build/release -R "bake carpathia"
+  if [ ! -e "$terrain" ]; then
+    echo "tsan: no flight, its elevation is not there"
+    return
+  fi
+  step "tsan: a flight"
+  cmake --build --preset tsan --target eyepoint
+  awk 'BEGIN { print "time,lat,lon,alt"
+    for (t = 0; t <= 90; ++t) printf "%d,%.6f,%.6f,2600\n", t, 49.05 + 0.0027 * t, 20 + 0.3 * sin(t / 15) }' >"$track"
+  build/release/bin/eyepoint-host --protocol native-fdm --to "$host" --track "$track" --loop >/dev/null &
+  sender=$!
+  build/tsan/bin/eyepoint --headless --terrain "$terrain" --host "native-fdm://$host" --duration 60 --size 320x240 \
+    --redraw always --cache-gpu 64 --cache-ram 32
+  kill "$sender"
+}
+
 tools/install_dependencies.sh test
 step "build: release"
 cmake --preset release -DEYE_BUILD_TESTS=ON >/dev/null
@@ -33,10 +52,12 @@ step "lint"
 tools/lint.sh
 
 # A report of a sanitizer ends the program with an error, so it ends this script.
-export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 TSAN_OPTIONS=halt_on_error=1
+export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+export TSAN_OPTIONS=halt_on_error=1:suppressions=$PWD/tests/tsan.supp
 if [ "$sanitizers" = yes ]; then
   sanitize asan base geo predict terrain bake paging link
   sanitize tsan telemetry paging link
+  fly_under_tsan
 fi
 
 if [ "$long" = yes ]; then
