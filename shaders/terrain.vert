@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.h"
 #include "shared/atmosphere.h"
+#include "shared/bend.h"
 
 layout(location = EYE_AT_POSITION_SKIRT) in ivec4 inPositionSkirt;  // lattice steps; w: sides a skirt's lower rim hangs from
 layout(location = EYE_AT_PARAM) in vec2 inParam;                    // (s, t)
@@ -39,6 +40,7 @@ void main() {
                    inOutward_ecef[3] * hangs.w;
     position_ecef += inEyeFractionSkirtM.w * (EYE_SKIRT_FLARE * outward - inUp_ecef);
   }
+  if (kBends) position_ecef = bent(position_ecef);
   precise vec4 position_clip = frame.clipFromEcef * vec4(position_ecef, 1.0);
   gl_Position = position_clip;
 

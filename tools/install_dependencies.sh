@@ -8,7 +8,7 @@ exec </dev/null # no question is ever asked, and a closed stdin is no obstacle
 build_and_fly=(
   ccache cmake g++ ninja-build pkg-config
   glslang-tools libvulkan-dev mesa-vulkan-drivers spirv-tools
-  catch2 libcli11-dev libeigen3-dev libexpected-dev libfmt-dev libgdal-dev libgeographiclib-dev libglfw3-dev libglm-dev
+  catch2 fonts-dejavu-core libcairo2-dev libcli11-dev libeigen3-dev libexpected-dev libfmt-dev libgdal-dev libgeographiclib-dev libglfw3-dev libglm-dev
   libimgui-dev libmeshoptimizer-dev libspdlog-dev libsqlite3-dev libtomlplusplus-dev libzstd-dev nlohmann-json3-dev zlib1g-dev
   ffmpeg # films of flights; eyepoint flies without it
 )

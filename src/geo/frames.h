@@ -19,6 +19,7 @@ using Mat3d = glm::dmat3;
 inline constexpr double kSemiMajorM = 6378137.0;
 inline constexpr double kFlattening = 1.0 / 298.257223563;
 inline constexpr double kSemiMinorM = kSemiMajorM * (1.0 - kFlattening);
+inline constexpr double kMeanEarthRadiusM = 6371000.0;  // where a sphere will do
 
 inline constexpr double radFromDeg(double deg) {
   return deg * 0.017453292519943295;

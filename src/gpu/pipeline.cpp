@@ -15,7 +15,12 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
                                   const PipelineSpec& spec) {
   const vk::raii::ShaderModule vertex = createModule(gpu, spec.vertexSpirv);
   const vk::raii::ShaderModule fragment = createModule(gpu, spec.fragmentSpirv);
-  const std::array stages{vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main"),
+  std::vector<vk::SpecializationMapEntry> entries;
+  for (uint32_t id = 0; id < spec.vertexConstants.size(); ++id) entries.emplace_back(id, id * 4, 4);
+  vk::SpecializationInfo constants;
+  constants.setMapEntries(entries).setData<uint32_t>(spec.vertexConstants);
+  const std::array stages{vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main",
+                                                            entries.empty() ? nullptr : &constants),
                           vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main")};
 
   vk::PipelineVertexInputStateCreateInfo vertexInput;

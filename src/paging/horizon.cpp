@@ -41,7 +41,7 @@ Horizon::Horizon(const Vec3d& eyeEcefM, double depthM) : depthM_(std::max(depthM
 }
 
 bool Horizon::hides(const ChunkMeta& meta, HorizonTest test) const {
-  if (!eyeOutside_) return false;
+  if (!eyeOutside_ || test == HorizonTest::none) return false;
   return test == HorizonTest::ellipsoid ? hidesPoint(meta) : hidesSphere(meta);
 }
 

@@ -15,7 +15,8 @@
 
 namespace eye {
 
-enum class HorizonTest { ellipsoid, paper };
+// `none`: nothing is hidden, for scenes in which refraction lets the eye see over the horizon.
+enum class HorizonTest { ellipsoid, paper, none };
 
 class Horizon {
  public:

@@ -230,7 +230,9 @@ void selectChunks(TerrainCache& cache, const View& view, const LodOptions& optio
     walk.fromRoots();
     walk.reviveBesideCoarse();
     walk.reviveHalfSides();
-    if (options.culling == CullingScheme::none || walk.greatestDepthM() <= horizon.depthM()) break;
+    if (options.culling == CullingScheme::none || options.horizon == HorizonTest::none ||
+        walk.greatestDepthM() <= horizon.depthM())
+      break;
     horizon = Horizon(view.eyeEcefM, walk.greatestDepthM());
     cache.beginFrame();
   }

@@ -12,7 +12,6 @@ namespace eye {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMeanEarthRadiusM = 6371000;
 constexpr double kRefraction = 0.13;
 constexpr double kHighestGroundM = 8850;
 constexpr double kNearestM = 1;

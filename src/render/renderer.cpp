@@ -100,7 +100,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     const std::string cachePath = pipelineCachePath(device);
     impl->cache = loadPipelineCache(device, cachePath);
     GLFWwindow* window = options.window ? impl->window->handle() : nullptr;
-    impl->scene = std::make_unique<ScenePass>(device, impl->cache, impl->colourFormat(), options.debugViews);
+    impl->scene =
+        std::make_unique<ScenePass>(device, impl->cache, impl->colourFormat(), options.debugViews, options.bend);
     impl->lists = std::make_unique<DrawLists>(device);
     impl->cullLists = std::make_unique<CullLists>(device, pyramidOnHost(options, device));
     impl->cull = std::make_unique<CullPass>(device, impl->cache);

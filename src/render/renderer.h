@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "geo/scene_bend.h"
 #include "geo/view.h"
 #include "gpu/device_description.h"
 #include "gpu/window_keys.h"
@@ -33,7 +34,8 @@ struct RendererOptions {
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
   int textureSize = 128;                          // of the terrain database
   DepthPyramidBy depthPyramid = DepthPyramidBy::device;
-  bool debugViews = false;  // FrameInput's tint and showDepthMap work
+  bool debugViews = false;        // FrameInput's tint and showDepthMap work
+  std::optional<SceneBend> bend;  // terrain is bent by this about the eye; not the debug views'
 };
 
 // Colours over the terrain, for looking at culling: by level of detail, or by what became of each cluster in the last

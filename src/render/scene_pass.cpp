@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "gpu/pipeline.h"
 #include "spirv/sky_frag.h"
@@ -60,6 +61,14 @@ PipelineSpec terrainSpec() {
   return spec;
 }
 
+// As shaders/shared/bend.h numbers them.
+std::vector<uint32_t> bendConstants(const SceneBend& bend) {
+  std::vector<uint32_t> constants{VK_TRUE};
+  for (const double value : {bend.stretchEast, bend.stretchNorth, bend.liftEastPerM, bend.liftNorthPerM})
+    constants.push_back(std::bit_cast<uint32_t>(static_cast<float>(value)));
+  return constants;
+}
+
 // The same records; the fourth numbers beside the skirts' directions are the tint.
 PipelineSpec tintedSpec() {
   PipelineSpec spec = terrainSpec();
@@ -83,7 +92,7 @@ PipelineSpec skySpec() {
 }  // namespace
 
 ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat,
-                     bool withTints) {
+                     bool withTints, const std::optional<SceneBend>& bend) {
   frame_ = createBuffer(gpu, sizeof(shader::FrameData), vk::BufferUsageFlagBits::eUniformBuffer, MemoryUse::upload);
   sampler_ = createSampler(gpu);
   setLayout_ = createSetLayout(gpu);
@@ -99,7 +108,9 @@ ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
     spec.depthFormat = kDepthFormat;
     return createPipeline(gpu, cache, spec);
   };
-  terrain_ = make(terrainSpec());
+  PipelineSpec terrain = terrainSpec();
+  if (bend) terrain.vertexConstants = bendConstants(*bend);
+  terrain_ = make(std::move(terrain));
   if (withTints) tinted_ = make(tintedSpec());
   sky_ = make(skySpec());
   const vk::DescriptorBufferInfo frame(*frame_.buffer, 0, VK_WHOLE_SIZE);

@@ -1,6 +1,7 @@
 // The scene: terrain, then the sky where no terrain is, with the descriptors and pipelines of both.
 #pragma once
 
+#include "geo/scene_bend.h"
 #include "render/chunk_pools.h"
 #include "render/draw_lists.h"
 #include "render/targets.h"
@@ -11,7 +12,9 @@ class ScenePass {
  public:
   // Throws vk::SystemError. `cache` gets what the driver compiles.
   // `withTints`: drawTinted may be called.
-  ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat, bool withTints);
+  // `bend`: of the terrain, tinted excepted.
+  ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat, bool withTints,
+            const std::optional<SceneBend>& bend);
 
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }

@@ -1,0 +1,46 @@
+// Summits in a panorama: where they are drawn, whether they show, and how far the map says that they are.
+#pragma once
+
+#include <span>
+
+#include "base/error.h"
+#include "paging/ground_query.h"
+#include "pano/gazetteer.h"
+#include "pano/panorama.h"
+#include "pano/render_panorama.h"
+
+namespace eye {
+
+struct PanoramaPeak {
+  std::string name;
+  Geodetic summit;                          // the gazetteer's; its height the terrain's where the gazetteer has none
+  Geodetic ground{};                          // the highest ground within reach of it: what the picture shows of it
+  double azimuthDeg = 0, elevationDeg = 0;  // of the summit, as it appears: with refraction
+  double trueM = 0;                         // eye to summit, straight
+  double x = 0, y = 0;                      // of the ground's summit in the picture, pixels
+  double groundM = 0;                       // eye to the ground's summit, straight
+  bool visible = false;
+  double measuredM = 0;  // in the map, just under the ground's summit; where visible
+};
+
+// A gazetteer's position may be off, and elevation on a raster cuts summits off: how far the highest ground is looked
+// for around it, metres. Two posts of 3 arc-seconds, and a gazetteer's fourth decimal.
+inline constexpr double kSummitReachM = 250;
+
+// The highest ground that is reached uphill, in steps from 60 m down to 4 m.
+Result<Geodetic> climb(GroundQuery& ground, const Geodetic& from, double reachM);
+
+// Those that could be seen, by distance and height, the nearest first. `ground` is of the same terrain.
+Result<std::vector<PanoramaPeak>> findPeaks(const Panorama& panorama, const PanoramaOptions& options,
+                                            std::span<const Summit> summits, GroundQuery& ground);
+
+// Where a point is drawn, in degrees; z: the straight distance, metres.
+struct Sighting {
+  double azimuthDeg = 0, elevationDeg = 0, distanceM = 0;
+};
+Sighting sightingOf(const Geodetic& eye, const Geodetic& point, const SceneBend& bend, EarthShape earth);
+
+// BASE.peaks.csv. docs/PANORAMA.md has the columns.
+Result<void> writePeaks(const std::string& path, std::span<const PanoramaPeak> peaks);
+
+}  // namespace eye
