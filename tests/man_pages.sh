@@ -4,7 +4,7 @@ set -uo pipefail
 bin=$1
 cd "$(dirname "${BASH_SOURCE[0]}")/../docs/man" || exit
 status=0
-for program in eyepoint eyepoint-bake eyepoint-bench eyepoint-host; do
+for program in eyepoint eyepoint-bake eyepoint-bench eyepoint-host eyepoint-panorama; do
   # bake's subcommands have their own help.
   help=$("$bin/$program" --help)
   [ "$program" = eyepoint-bake ] && for sub in info verify demo; do help+=$("$bin/$program" "$sub" --help); done

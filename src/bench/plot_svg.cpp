@@ -125,8 +125,14 @@ std::string lines(const ReportPlot& plot, const Axis& y) {
     std::string points;
     for (size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
       if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i]) || (y.isLogarithmic && series.y[i] <= 0)) continue;
-      points += fmt::format("{:.1f},{:.1f} ", xPx(x.share(series.x[i])), yPx(y.share(series.y[i])));
+      const double px = xPx(x.share(series.x[i])), py = yPx(y.share(series.y[i]));
+      if (series.areDots)
+        svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\" fill-opacity=\"0.6\"/>", px, py,
+                           kColours[s % kColours.size()]);
+      else
+        points += fmt::format("{:.1f},{:.1f} ", px, py);
     }
+    if (series.areDots) continue;
     svg += fmt::format(
         "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-linejoin=\"round\" points=\"{}\">"
         "<title>{}</title></polyline>",

@@ -25,6 +25,7 @@ struct ReportTable {
 struct Series {
   std::string name{};
   std::vector<double> x{}, y{};  // lines: points; bars: y by category, x empty. Not finite: left out
+  bool areDots = false;          // the points by themselves instead of the line through them
 };
 
 struct ReportPlot {

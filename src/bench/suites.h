@@ -15,6 +15,7 @@ struct SuiteOptions {
   std::string terrain;  // a database; empty: the embedded demo
   std::string device;
   std::vector<std::string> tracks;  // recordings for the suite flight
+  std::vector<std::string> peaks;   // gazetteers for the suite panorama; empty: the terrain's own summits
   bool quick = false;               // seconds instead of minutes: fewer views and frames
   std::function<void(const std::string& what, double share)> progress;  // 0 to 1 of the suite; may be empty
 };
@@ -29,5 +30,6 @@ std::span<const Suite> suites();  // in the order in which `all` runs them
 Result<SuiteReport> runCullingSuite(const SuiteOptions& options);
 Result<SuiteReport> runSelectorSuite(const SuiteOptions& options);
 Result<SuiteReport> runFlightSuite(const SuiteOptions& options);
+Result<SuiteReport> runPanoramaSuite(const SuiteOptions& options);
 
 }  // namespace eye

@@ -7,7 +7,7 @@
 // lifted scene shows each point where the bent ray arrives from, and hides what the bent ray does not reach.
 //
 // A sphere instead of the ellipsoid is a stretch of the level offsets and another lift: the radii of curvature differ.
-// Exact to the second order; 3 m at 100 km are left.
+// Exact to the second order; at 100 km up to 8 m are left.
 #pragma once
 
 #include "geo/frames.h"

@@ -183,4 +183,14 @@ Result<std::vector<Summit>> loadGazetteer(const std::string& path) {
   return summits;
 }
 
+Result<std::vector<Summit>> loadGazetteers(const std::vector<std::string>& paths) {
+  std::vector<Summit> all;
+  for (const std::string& path : paths) {
+    Result<std::vector<Summit>> summits = loadGazetteer(path);
+    if (!summits) return summits;
+    std::ranges::move(*summits, std::back_inserter(all));
+  }
+  return all;
+}
+
 }  // namespace eye

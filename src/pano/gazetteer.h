@@ -34,5 +34,6 @@ Result<std::vector<Summit>> parseGeoNamesGazetteer(std::string_view text);
 Result<std::vector<Summit>> parseAlpanoGazetteer(std::string_view text);
 
 Result<std::vector<Summit>> loadGazetteer(const std::string& path);
+Result<std::vector<Summit>> loadGazetteers(const std::vector<std::string>& paths);  // behind one another
 
 }  // namespace eye

@@ -26,13 +26,6 @@ double distanceAt(const Panorama& panorama, double x, double y) {
                                           : panorama.distanceM[frame.at(column, row)];
 }
 
-// A pixel's centre that lies half a pixel to one and a half under the summit, where it is drawn without doubt; one more
-// where the picture still has sky.
-double measuredM(const Panorama& panorama, double x, double y) {
-  const double at = distanceAt(panorama, x, y + 1);
-  return std::isnan(at) ? distanceAt(panorama, x, y + 2) : at;
-}
-
 bool isHidden(double measuredM, double trueM) {
   return measuredM < trueM - std::max(kHiddenM, kHiddenShare * trueM);
 }
@@ -62,6 +55,11 @@ std::string quoted(const std::string& name) {
 }
 
 }  // namespace
+
+double measuredM(const Panorama& panorama, double x, double y) {
+  const double at = distanceAt(panorama, x, y + 1);
+  return std::isnan(at) ? distanceAt(panorama, x, y + 2) : at;
+}
 
 Sighting sightingOf(const Geodetic& eye, const Geodetic& point, const SceneBend& bend, EarthShape earth) {
   const Vec3d straight = offsetEnu(eye, point, earth);

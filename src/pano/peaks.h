@@ -14,7 +14,7 @@ namespace eye {
 struct PanoramaPeak {
   std::string name;
   Geodetic summit;                          // the gazetteer's; its height the terrain's where the gazetteer has none
-  Geodetic ground{};                          // the highest ground within reach of it: what the picture shows of it
+  Geodetic ground{};                        // the highest ground within reach of it: what the picture shows of it
   double azimuthDeg = 0, elevationDeg = 0;  // of the summit, as it appears: with refraction
   double trueM = 0;                         // eye to summit, straight
   double x = 0, y = 0;                      // of the ground's summit in the picture, pixels
@@ -39,6 +39,10 @@ struct Sighting {
   double azimuthDeg = 0, elevationDeg = 0, distanceM = 0;
 };
 Sighting sightingOf(const Geodetic& eye, const Geodetic& point, const SceneBend& bend, EarthShape earth);
+
+// The map's distance of a summit that is drawn at (x, y): of the pixel whose centre lies half a pixel to one and a half
+// under it, where it is drawn without doubt, or of the next where that is sky still. NaN where that is sky too.
+double measuredM(const Panorama& panorama, double x, double y);
 
 // BASE.peaks.csv. docs/PANORAMA.md has the columns.
 Result<void> writePeaks(const std::string& path, std::span<const PanoramaPeak> peaks);

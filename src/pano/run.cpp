@@ -28,16 +28,6 @@ std::string titleOf(const PanoramaOptions& options) {
                      std::abs(eye.lonDeg), eye.lonDeg < 0 ? "W" : "E", eye.altM);
 }
 
-Result<std::vector<Summit>> loadAll(const std::vector<std::string>& paths) {
-  std::vector<Summit> all;
-  for (const std::string& path : paths) {
-    Result<std::vector<Summit>> summits = loadGazetteer(path);
-    if (!summits) return summits;
-    std::ranges::move(*summits, std::back_inserter(all));
-  }
-  return all;
-}
-
 }  // namespace
 
 Result<EyeWish> parseEyeWish(const std::string& text) {
@@ -82,7 +72,7 @@ Result<Geodetic> placeEye(const EyeWish& wish, GroundQuery& ground) {
 
 Result<void> runPanorama(const PanoramaJob& job) {
   PanoramaOptions options = job.options;
-  const Result<std::vector<Summit>> summits = loadAll(job.peaks);
+  const Result<std::vector<Summit>> summits = loadGazetteers(job.peaks);
   if (!summits) return tl::unexpected(summits.error());
   Result<GroundQuery> ground = GroundQuery::open(options.terrain);
   if (!ground) return tl::unexpected(ground.error());

@@ -46,6 +46,10 @@ void declareOptions(CLI::App& app, Arguments& args) {
                  "Recorded flight for the suite flight (CSV, IGC or pcap); may be given again")
       ->type_name("FILE")
       ->allow_extra_args(false);
+  app.add_option("--peaks", args.options.peaks,
+                 "Summits for the suite panorama (CSV, GeoJSON, GeoNames); may be given again; else the terrain's own")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   app.add_flag("--quick", args.options.quick, "Fewer views and frames: seconds a suite, to see that it works");
   app.add_option("--device", args.options.device, "Part of a Vulkan device's name; eyepoint lists them")
       ->type_name("NAME");

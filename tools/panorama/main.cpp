@@ -8,6 +8,7 @@
 
 #include "app/options.h"
 #include "app/process_setup.h"
+#include "base/version.h"
 #include "link/pose_limits.h"
 #include "pano/run.h"
 
@@ -66,7 +67,7 @@ void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--log-level", args.logLevel, "What is printed")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
       ->capture_default_str();
-  app.set_version_flag("--version", std::string("eyepoint-panorama ") + EYE_VERSION);
+  app.set_version_flag("--version", versionLine("eyepoint-panorama"));
   app.footer(
       "Examples:\n"
       "  eyepoint-panorama --terrain tatra.eyt --at 49.1795,20.0881 --peaks summits.csv --out rysy\n"
