@@ -24,7 +24,7 @@ constexpr double kNearestM = 3000, kFarthestM = 150000;
 // Of a viewpoint's peaks so many are tried, spread over all distances.
 constexpr size_t kMostTried = 500, kQuickTried = 60;
 constexpr size_t kTerrainSummits = 600, kQuickTerrainSummits = 60;
-constexpr double kSameSummitM = 300;
+constexpr double kSameSummitM = 300;  // between gazetteer and ground; else the terrain does not have it
 
 // By GeographicLib itself, so that the truth is not our own geodesy.
 double straightM(const Geodetic& a, const Geodetic& b) {
@@ -60,7 +60,10 @@ Result<std::vector<Target>> targetsOf(const Geodetic& eye, const std::vector<Sum
   for (const Summit& summit : summits) {
     const Geodetic place{summit.latDeg, summit.lonDeg, summit.heightM.value_or(0)};
     const double awayM = straightM(eye, place);
-    if (summit.heightM && awayM > kNearestM && awayM < kFarthestM) near.push_back({place, summit.name, awayM});
+    if (!summit.heightM || awayM < kNearestM || awayM > kFarthestM) continue;
+    const Result<GroundHit> under = ground.under(place.latDeg, place.lonDeg);
+    if (!under) return tl::unexpected(under.error());
+    if (std::abs(under->position.altM - place.altM) < 2 * kSameSummitM) near.push_back({place, summit.name, awayM});
   }
   std::ranges::stable_sort(near, {}, &Target::trueM);
   std::vector<Target> targets;
@@ -68,7 +71,7 @@ Result<std::vector<Target>> targetsOf(const Geodetic& eye, const std::vector<Sum
     Target target = near[i * near.size() / std::min(most, near.size())];
     const Result<Geodetic> top = climb(ground, target.top, kSummitReachM);
     if (!top) return tl::unexpected(top.error());
-    if (std::abs(top->altM - target.top.altM) > kSameSummitM) continue;  // the terrain does not have it
+    if (std::abs(top->altM - target.top.altM) > kSameSummitM) continue;
     const Result<bool> inSight = isInSight(ground, eye, *top, refraction);
     if (!inSight) return tl::unexpected(inSight.error());
     if (!*inSight) continue;

@@ -102,7 +102,8 @@ Result<void> runPanorama(const PanoramaJob& job) {
   const Result<int> named = annotate(panorama, *peaks, titleOf(options));
   if (!named) return tl::unexpected(named.error());
   options.progress("writing", 0.97);
-  const auto picture = writePng(job.out + ".png", panorama.rgba, panorama.frame.widthPx, panorama.frame.heightPx);
+  const auto picture =
+      writePng(job.out + ".png", panorama.rgba, panorama.frame.widthPx, panorama.frame.heightPx, PngEffort::quick);
   if (const Result<void> written = map.get(); !written) return written;
   if (!picture) return picture;
   if (const Result<void> written = writePeaks(job.out + ".peaks.csv", *peaks); !written) return written;
