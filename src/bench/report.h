@@ -58,7 +58,7 @@ struct Report {
 };
 
 std::string machineLine();  // "AMD EPYC ..., 2 cores"
-std::string loadLine();  // of the last minute: what else the machine does
+std::string loadLine();     // of the last minute: what else the machine does
 
 std::string reportJson(const Report& report);
 std::string reportHtml(const Report& report);
