@@ -33,13 +33,15 @@ Result<Message> parse(std::span<const std::byte> datagram);
 
 // Beyond this a datagram is cut into fragments on Ethernet, and one lost fragment loses all.
 inline constexpr size_t kMaxMessageBytes = 1472;
+// Of a message that takes this upon itself to say much at once: what UDP can carry, a thousand answers and more.
+inline constexpr size_t kMaxLongMessageBytes = 65000;
 
 // Puts a message together, header first, in a format that parse() knows: that of a message received, or a host's
 // choice.
 class Builder {
  public:
-  Builder(const Format& format, const IgControl& header);
-  Builder(const Format& format, const StartOfFrame& header);
+  Builder(const Format& format, const IgControl& header, size_t maxBytes = kMaxMessageBytes);
+  Builder(const Format& format, const StartOfFrame& header, size_t maxBytes = kMaxMessageBytes);
 
   // False when it no longer fits: then send what is there and begin another message. `packet` is no header. An Entity
   // in 3.x has a place, its traits default to an active, opaque one; in 4.0 it has at least one of the two.
@@ -50,6 +52,7 @@ class Builder {
 
  private:
   Format format_;
+  size_t maxBytes_;
   std::vector<std::byte> bytes_;
 };
 

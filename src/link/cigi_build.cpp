@@ -83,11 +83,11 @@ void appendPacket(std::vector<std::byte>& to, const Entity& entity, const Format
 
 }  // namespace
 
-Builder::Builder(const Format& format, const IgControl& header)
-    : format_(format), bytes_(headerBytes(header, format, 4)) {}
+Builder::Builder(const Format& format, const IgControl& header, size_t maxBytes)
+    : format_(format), maxBytes_(maxBytes), bytes_(headerBytes(header, format, 4)) {}
 
-Builder::Builder(const Format& format, const StartOfFrame& header)
-    : format_(format), bytes_(headerBytes(header, format, 5)) {}
+Builder::Builder(const Format& format, const StartOfFrame& header, size_t maxBytes)
+    : format_(format), maxBytes_(maxBytes), bytes_(headerBytes(header, format, 5)) {}
 
 bool Builder::add(const Packet& packet) {
   const size_t before = bytes_.size();
@@ -99,7 +99,7 @@ bool Builder::add(const Packet& packet) {
           appendPacket(bytes_, p, format_);
       },
       packet);
-  if (bytes_.size() <= kMaxMessageBytes) return true;
+  if (bytes_.size() <= maxBytes_) return true;
   bytes_.resize(before);
   return false;
 }

@@ -48,7 +48,9 @@ std::optional<Replies::Reply> Replies::frame(const FrameReport& report, int64_t 
   start.paging = report.pagingBehind;
   const bool speaks = host_ && nowNs - heardNs_ <= kRepliesEndNs;
   if (!fixedReceiver_ && !speaks) return std::nullopt;
-  Builder builder(format_, start);
+  // Cut into fragments where a host asks for more than Ethernet carries at once: else a thousand answers, which a host
+  // may want each frame, would wait for twenty frames.
+  Builder builder(format_, start, kMaxLongMessageBytes);
   while (!answers_.empty() && builder.add(answers_.front())) answers_.pop_front();
   return Reply{fixedReceiver_ ? *fixedReceiver_ : *host_, builder.take()};
 }

@@ -12,7 +12,7 @@
 
 namespace eye::cigi {
 
-// Answers that wait for a frame: a message holds some forty to ninety.
+// Answers that wait for a frame: a message holds nearly all of the longest kind, and all of the others.
 inline constexpr size_t kMaxAnswers = 1024;
 
 class Replies {

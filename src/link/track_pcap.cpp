@@ -19,18 +19,30 @@ bool isOf(RecordedProtocol protocol, std::span<const std::byte> payload) {
   return protocol == RecordedProtocol::cigi ? cigi::isFromHost(payload) : looksLikeNativeFdm(payload);
 }
 
+// None of the datagrams is `wanted`; a version of CIGI that is not understood is the likeliest reason.
+tl::unexpected<Error> noneIs(const std::string& wanted, const std::vector<CapturedDatagram>& datagrams) {
+  std::string message = fmt::format("none of the capture's {} UDP datagrams is {}", datagrams.size(), wanted);
+  for (const CapturedDatagram& datagram : datagrams) {
+    const auto parsed = cigi::parse(datagram.payload);
+    if (parsed || parsed.error().kind != ErrorKind::unsupported) continue;
+    message += ": " + parsed.error().message;
+    break;
+  }
+  return fail(ErrorKind::badData, message);
+}
+
+std::string nativeFdmPacket() {
+  return fmt::format("a native-fdm packet (version 24 with {} bytes or 25 with {})", kNativeFdmBytesV24,
+                     kNativeFdmBytesV25);
+}
+
 // The datagrams of the capture's first stream of a protocol.
 Result<std::vector<CapturedDatagram>> streamOf(Capture capture, RecordedProtocol protocol) {
   auto& datagrams = capture.datagrams;
   const auto first =
       std::ranges::find_if(datagrams, [&](const CapturedDatagram& d) { return isOf(protocol, d.payload); });
   if (first == datagrams.end())
-    return fail(ErrorKind::badData,
-                fmt::format("none of the capture's {} UDP datagrams is {}", datagrams.size(),
-                            protocol == RecordedProtocol::cigi
-                                ? std::string("a CIGI host's")
-                                : fmt::format("a native-fdm packet (version 24 with {} bytes or 25 with {})",
-                                              kNativeFdmBytesV24, kNativeFdmBytesV25)));
+    return noneIs(protocol == RecordedProtocol::cigi ? "a CIGI host's message" : nativeFdmPacket(), datagrams);
   const CapturedDatagram stream = *first;
   std::erase_if(datagrams,
                 [&](const CapturedDatagram& d) { return !isOf(protocol, d.payload) || !toSamePlace(d, stream); });
@@ -41,10 +53,7 @@ Result<RecordedProtocol> protocolIn(const Capture& capture) {
   for (const CapturedDatagram& datagram : capture.datagrams)
     for (const RecordedProtocol protocol : {RecordedProtocol::nativeFdm, RecordedProtocol::cigi})
       if (isOf(protocol, datagram.payload)) return protocol;
-  return fail(ErrorKind::badData,
-              fmt::format("none of the capture's {} UDP datagrams is a native-fdm packet (version 24 with {} bytes or "
-                          "25 with {}) or a CIGI host's message",
-                          capture.datagrams.size(), kNativeFdmBytesV24, kNativeFdmBytesV25));
+  return noneIs(nativeFdmPacket() + " or a CIGI host's message", capture.datagrams);
 }
 
 double secondsBetween(const CapturedDatagram& from, const CapturedDatagram& to) {

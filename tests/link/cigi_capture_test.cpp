@@ -127,6 +127,10 @@ TEST_CASE("CIGI 2: a recorded session is refused by name") {
     REQUIRE(message.error().kind == ErrorKind::unsupported);
     REQUIRE(message.error().message.starts_with("the message is CIGI 2;"));
   }
+  const auto track = parsePcapTrack(*file);
+  REQUIRE_FALSE(track);
+  CHECK(track.error().message.find("none of the capture's 949") != std::string::npos);
+  CHECK(track.error().message.find("the message is CIGI 2;") != std::string::npos);
 }
 
 TEST_CASE("CIGI 3.0 to 3.3: Wireshark reads what is built as it was meant") {
