@@ -85,6 +85,19 @@ Options withDelay(HostDelayMode mode) {
   return options;
 }
 
+// A live host, and the tracker that follows it.
+struct Followed {
+  const Options options = withDelay(HostDelayMode::automatic);
+  ViewpointTracker tracker{options};
+  SourceSample host;
+  Followed() { host.live = host.valid = true; }
+  void hear(const Pose& pose, double arrivedS) {
+    host.pose = pose;
+    host.arrivedNs = static_cast<int64_t>(arrivedS * 1e9);
+  }
+  void frame(double nowS) { tracker.observe(host, host.pose, nowS); }
+};
+
 }  // namespace
 
 TEST_CASE("a live host's aircraft is drawn where it is at the frame's time, without stutter") {
@@ -133,31 +146,25 @@ TEST_CASE("a channel looks from the aircraft's nose by its offset, in the aircra
 }
 
 TEST_CASE("an aircraft that stands is drawn where it stands, and so is one just heard of") {
-  const Options options = withDelay(HostDelayMode::automatic);
-  ViewpointTracker tracker(options);
-  SourceSample host;
-  host.live = host.valid = true;
+  Followed followed;
+  ViewpointTracker& tracker = followed.tracker;
   const FlightPath path = flightPath();
   for (int i = 0; i < 300; ++i) {
-    host.pose = path.poseAt(i < 200 ? i / 60.0 : 200 / 60.0);
-    host.arrivedNs = static_cast<int64_t>((500 + i / 60.0) * 1e9);
-    tracker.observe(host, host.pose, 500 + i / 60.0 + 0.004);
-    if (i < 5 || i > 217) CHECK(tracker.eye().pose == host.pose);
-    if (i > 20 && i < 200) CHECK_FALSE(tracker.eye().pose == host.pose);
+    followed.hear(path.poseAt(i < 200 ? i / 60.0 : 200 / 60.0), 500 + i / 60.0);
+    followed.frame(500 + i / 60.0 + 0.004);
+    if (i < 5 || i > 217) CHECK(tracker.eye().pose == followed.host.pose);
+    if (i > 20 && i < 200) CHECK_FALSE(tracker.eye().pose == followed.host.pose);
   }
 }
 
 TEST_CASE("a host that says each pose twice is drawn as evenly as one that does not") {
-  const Options options = withDelay(HostDelayMode::automatic);
-  ViewpointTracker tracker(options);
-  SourceSample host;
-  host.live = host.valid = true;
+  Followed followed;
+  ViewpointTracker& tracker = followed.tracker;
   const FlightPath path = flightPath();
   Vec3d before{};
   for (int i = 0; i < 300; ++i) {
-    host.pose = path.poseAt(i / 2 / 30.0);  // a simulation of 30 Hz in packets of 60
-    host.arrivedNs = static_cast<int64_t>((500 + i / 60.0) * 1e9);
-    tracker.observe(host, host.pose, 500 + i / 60.0 + 0.004);
+    followed.hear(path.poseAt(i / 2 / 30.0), 500 + i / 60.0);  // a simulation of 30 Hz in packets of 60
+    followed.frame(500 + i / 60.0 + 0.004);
     const Vec3d shown = ecefFromGeodetic(tracker.eye().pose.position);
     if (i > 40) CHECK(glm::distance(shown, before) == Approx(150 / 60.0).epsilon(0.1));
     before = shown;
@@ -165,47 +172,42 @@ TEST_CASE("a host that says each pose twice is drawn as evenly as one that does 
 }
 
 TEST_CASE("frames much faster than packets: no jump, and the speed is the aircraft's") {
-  const Options options = withDelay(HostDelayMode::automatic);
-  ViewpointTracker tracker(options);
-  SourceSample host;
-  host.live = host.valid = true;
+  Followed followed;
+  ViewpointTracker& tracker = followed.tracker;
   const FlightPath path = flightPath();
   const View view = makeView({}, symmetricFrustum(60, 800, 600, 1), 800, 600);
   int jumps = 0;
   for (int frame = 0; frame < 5000; ++frame) {  // 1,000 a second, packets 10 a second
-    host.pose = path.poseAt(frame / 100 / 10.0);
-    host.arrivedNs = static_cast<int64_t>((500 + frame / 100 / 10.0) * 1e9);
-    tracker.observe(host, host.pose, 500 + frame / 1000.0);
+    followed.hear(path.poseAt(frame / 100 / 10.0), 500 + frame / 100 / 10.0);
+    followed.frame(500 + frame / 1000.0);
     jumps += tracker.lookAhead(view).jumped;
   }
   CHECK(jumps == 1);  // the first packet
   CHECK(tracker.lookAhead(view).speedMS == Approx(150).epsilon(0.02));
-  CHECK_FALSE(tracker.eye().pose == host.pose);
+  CHECK_FALSE(tracker.eye().pose == followed.host.pose);
 }
 
 TEST_CASE("a host that falls silent: the eye goes on a fifth of a second, then waits, and says so") {
-  const Options options = withDelay(HostDelayMode::automatic);
-  ViewpointTracker tracker(options);
-  SourceSample host;
-  host.live = host.valid = true;
+  Followed followed;
+  ViewpointTracker& tracker = followed.tracker;
   const FlightPath path = flightPath();
   double nowS = 800;
   for (int i = 0; i < 180; ++i, nowS += 1 / 60.0) {
-    host.pose = path.poseAt(i / 60.0);
-    host.arrivedNs = static_cast<int64_t>(nowS * 1e9);
-    tracker.observe(host, host.pose, nowS);
+    followed.hear(path.poseAt(i / 60.0), nowS);
+    followed.frame(nowS);
     CHECK_FALSE(tracker.eye().silent);
   }
-  const Vec3d last = ecefFromGeodetic(host.pose.position);
+  const Vec3d last = ecefFromGeodetic(followed.host.pose.position);
   for (int i = 0; i < 120; ++i, nowS += 1 / 60.0) {
-    tracker.observe(host, host.pose, nowS);
+    followed.frame(nowS);
     const double goneM = glm::distance(ecefFromGeodetic(tracker.eye().pose.position), last);
     CHECK(goneM < 0.2 * 150 + 3);
     if (i > 14) {
       CHECK(tracker.eye().silent);
       CHECK(goneM == Approx(0.2 * 150).margin(3));
       // The pager waits with it.
-      const LookAhead look = tracker.lookAhead(makeView(host.pose, symmetricFrustum(60, 800, 600, 1), 800, 600));
+      const LookAhead look =
+          tracker.lookAhead(makeView(followed.host.pose, symmetricFrustum(60, 800, 600, 1), 800, 600));
       CHECK(glm::distance(look.at(0).ecefM, last) == Approx(0.2 * 150).margin(3));
       CHECK(look.at(5).ecefM == look.at(0).ecefM);
       CHECK(tracker.record(2).horizonS == 0);
