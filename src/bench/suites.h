@@ -31,5 +31,6 @@ Result<SuiteReport> runCullingSuite(const SuiteOptions& options);
 Result<SuiteReport> runSelectorSuite(const SuiteOptions& options);
 Result<SuiteReport> runFlightSuite(const SuiteOptions& options);
 Result<SuiteReport> runPanoramaSuite(const SuiteOptions& options);
+Result<SuiteReport> runHostSuite(const SuiteOptions& options);
 
 }  // namespace eye

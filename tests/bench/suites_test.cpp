@@ -106,6 +106,29 @@ TEST_CASE("Suite flight: every task with and without prediction, in real time") 
   CHECK(report->plots.size() == 2);
 }
 
+TEST_CASE("Suite host: every protocol, flood and link, with figures that can be") {
+  const auto report = quickly(runHostSuite);
+  if (!report) return;
+  requireKeys(report->summary, {"transport_delay_ms", "transport_delay_p99_ms"});
+  CHECK(report->summary["transport_delay_ms"] > 0);
+  CHECK(report->summary["transport_delay_ms"] < 2000);
+  std::set<std::string> protocols;
+  double answered = 0, followed = 0, received = 0;
+  for (const auto& row : report->rows) {
+    requireKeys(row, {"protocol", "case", "value", "unit"});
+    protocols.insert(row["protocol"].get<std::string>());
+    REQUIRE(row["value"].is_number());
+    const std::string name = row["case"].get<std::string>();
+    if (name == "a thousand heights a frame: answered") answered = row["value"];
+    if (name == "flood of valid state: frames that follow within 0.1 s") followed = row["value"];
+    if (name == "flood of garbage: received") received = row["value"];
+  }
+  CHECK(protocols == std::set<std::string>{"native-fdm", "CIGI 3.3", "CIGI 4.0", "CIGI"});
+  CHECK(answered > 0.5);
+  CHECK(followed > 0.5);
+  CHECK(received > 1000);
+}
+
 TEST_CASE("A suite over no database says so") {
   SuiteOptions options;
   options.terrain = "/nowhere/none.eyt";

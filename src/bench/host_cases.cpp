@@ -1,0 +1,214 @@
+#include "bench/host_cases.h"
+
+#include <time.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include <unistd.h>
+
+#include "link/cigi_host.h"
+#include "link/flight_plan.h"
+#include "link/host_lock.h"
+#include "telemetry/trace.h"
+
+namespace eye {
+namespace {
+
+constexpr double kLearningS = 1.5;  // of the eye's filter
+constexpr double kReachM = 4000;    // of questions round a place
+constexpr double kAboveM = 400;
+constexpr uint32_t kQuestionsSeed = 5;  // any; the same questions in every run
+
+double residentMiB() {
+  std::ifstream statm("/proc/self/statm");
+  uint64_t size = 0, resident = 0;
+  statm >> size >> resident;
+  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+double threadCpuMs() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
+}
+
+// Until the host of the case before counts as gone: CIGI hears one host at a time.
+Result<std::vector<ShownFrame>> awaitFreeHost(LiveShow& show) {
+  return show.show(static_cast<double>(kHostSilenceNs) * 1e-9 + 0.1);
+}
+
+// What a flood sends, for as long as it does.
+Flood::Next contentsOf(FloodKind kind, HostProtocol protocol, const NumberedPoses& poses) {
+  if (kind == FloodKind::valid) {
+    return [=, message = std::vector<std::byte>()](uint64_t index, double timeS) mutable {
+      message = messageOf(protocol, poses.at(static_cast<uint32_t>(timeS * kHostRateHz)), static_cast<uint32_t>(index),
+                          timeS);
+      return std::span<const std::byte>(message);
+    };
+  }
+  return
+      [all = garbage(protocol)](uint64_t index, double) { return std::span<const std::byte>(all[index % all.size()]); };
+}
+
+class QuestionPlaces {
+ public:
+  explicit QuestionPlaces(const Geodetic& middle) : middle_(middle) {}
+  Geodetic next() {
+    const double eastM = reach_(random_), northM = reach_(random_);
+    return offsetBy(middle_, eastM, northM);
+  }
+
+ private:
+  Geodetic middle_;
+  std::mt19937 random_{kQuestionsSeed};
+  std::uniform_real_distribution<> reach_{-kReachM, kReachM};
+};
+
+}  // namespace
+
+std::vector<TransportDelay> transportDelays(const std::vector<ShownFrame>& frames, const NumberedPoses& poses,
+                                            const SteadyHost& host) {
+  std::vector<TransportDelay> delays;
+  uint32_t before = 0;
+  for (const ShownFrame& frame : frames) {
+    const uint32_t number = poses.numberOf(frame.told);
+    const int64_t sentNs = host.sentNs(number);
+    if (frame.counts.packets == 0 || number == before || sentNs == 0) continue;
+    before = number;
+    delays.push_back(
+        {static_cast<double>(frame.endedNs - sentNs) * 1e-6, static_cast<double>(frame.beganNs - sentNs) * 1e-6});
+  }
+  return delays;
+}
+
+Result<FloodFigures> showUnderFlood(LiveShow& show, HostProtocol protocol, FloodKind kind, const NumberedPoses& poses,
+                                    double durationS) {
+  FloodFigures figures;
+  if (const auto free = awaitFreeHost(show); !free) return tl::unexpected(free.error());
+  const auto unread = UdpSocket::listenOn({kLoopbackAddress, 0});
+  if (!unread) return tl::unexpected(unread.error());
+  // The valid flood is the host itself, gone wild.
+  std::optional<SteadyHost> host;
+  if (kind != FloodKind::valid) host.emplace(protocol, show.port(), poses);
+  std::optional<Flood> flood;
+  if (kind != FloodKind::none)
+    flood.emplace(kind == FloodKind::elsewhere ? unread->port() : show.port(), kFloodHz,
+                  contentsOf(kind, protocol, poses));
+  const int64_t beganNs = host ? host->startedNs() : flood->startedNs();
+  if (const auto started = show.show(kLearningS); !started) return tl::unexpected(started.error());
+  const double beforeMiB = residentMiB();
+  const auto frames = show.show(durationS);
+  if (!frames) return tl::unexpected(frames.error());
+  figures.grownMiB = residentMiB() - beforeMiB;
+  figures.sentHz = flood ? flood->sentHz() : 0;
+  flood.reset();
+
+  size_t followed = 0;
+  for (const ShownFrame& frame : *frames) {
+    figures.frameMs.push_back(frame.frameMs);
+    const double agoS = static_cast<double>(frame.beganNs - beganNs) * 1e-9 - poses.numberOf(frame.told) / kHostRateHz;
+    followed += std::abs(agoS) <= kFollowedS;
+  }
+  const auto& first = frames->front().counts;
+  const auto& last = frames->back().counts;
+  const double spanS = static_cast<double>(frames->back().beganNs - frames->front().beganNs) * 1e-9;
+  figures.receivedHz = static_cast<double>(last.packets - first.packets) / spanS;
+  figures.followedShare = static_cast<double>(followed) / static_cast<double>(frames->size());
+  return figures;
+}
+
+Result<double> trackErrorM(LiveShow& show, HostProtocol protocol, const std::function<Pose(double)>& poseAt,
+                           double durationS, const BadLinkOptions& link) {
+  if (const auto free = awaitFreeHost(show); !free) return tl::unexpected(free.error());
+  const FlightOverBadLink flight(protocol, show.port(), poseAt, durationS + 2 * kLearningS, link);
+  if (const auto learnt = show.show(kLearningS); !learnt) return tl::unexpected(learnt.error());
+  const auto frames = show.show(durationS);
+  if (!frames) return tl::unexpected(frames.error());
+  double squares = 0;
+  for (const ShownFrame& frame : *frames) {
+    const double atS = static_cast<double>(frame.beganNs - flight.startedNs()) * 1e-9;
+    const double offM = glm::distance(ecefFromGeodetic(frame.eye.position), ecefFromGeodetic(poseAt(atS).position));
+    squares += offM * offM;
+  }
+  return std::sqrt(squares / static_cast<double>(frames->size()));
+}
+
+std::vector<cigi::GroundQuestion> heightsRound(const Geodetic& place) {
+  QuestionPlaces places(place);
+  std::vector<cigi::GroundQuestion> questions(kQuestions);
+  for (cigi::GroundQuestion& question : questions) {
+    question.at = places.next();
+    question.request = cigi::HeightRequest{.kind = cigi::HeightKind::both, .point = *question.at};
+  }
+  return questions;
+}
+
+std::vector<cigi::GroundQuestion> sightsRound(const Geodetic& place) {
+  QuestionPlaces places({place.latDeg, place.lonDeg, place.altM + kAboveM});
+  std::vector<cigi::GroundQuestion> questions(kQuestions);
+  for (cigi::GroundQuestion& question : questions) {
+    const Geodetic from = places.next(), to = places.next();
+    cigi::SightSegmentRequest request;
+    request.extended = true;
+    request.source = from, request.destination = to;
+    question.request = request;
+    question.fromEcefM = question.sourceEcefM = ecefFromGeodetic(from);
+    question.toEcefM = ecefFromGeodetic(to);
+  }
+  return questions;
+}
+
+AnswerTimes timeAnswers(const std::vector<cigi::GroundQuestion>& questions, GroundProbe& probe) {
+  for (const cigi::GroundQuestion& question : questions) (void)cigi::answerTo(question, &probe);
+  AnswerTimes times;
+  const double allBeganMs = threadCpuMs();
+  for (const cigi::GroundQuestion& question : questions) (void)cigi::answerTo(question, &probe);
+  times.allMs = threadCpuMs() - allBeganMs;
+  for (const cigi::GroundQuestion& question : questions) {  // again, with a look at the clock between them
+    const double beganMs = threadCpuMs();
+    (void)cigi::answerTo(question, &probe);
+    times.longestMs = std::max(times.longestMs, threadCpuMs() - beganMs);
+  }
+  return times;
+}
+
+Result<AskedAndAnswered> askHeights(LiveShow& show, const NumberedPoses& poses, const Geodetic& place,
+                                    double durationS) {
+  if (const auto free = awaitFreeHost(show); !free) return tl::unexpected(free.error());
+  const auto socket = UdpSocket::connectTo({kLoopbackAddress, show.port()});
+  if (!socket) return tl::unexpected(socket.error());
+  cigi::ReplyListener replies(*socket);
+  AskedAndAnswered result;
+  std::jthread asker([&](const std::stop_token& stop) {
+    for (uint32_t frame = 0; !stop.stop_requested(); ++frame) {
+      (void)replies.awaitStart(100);  // the image generator's pace: a frame's questions for each frame
+      auto ask = [&, places = QuestionPlaces(place)](cigi::Builder& builder, int id) mutable {
+        return builder.add(cigi::HeightRequest{
+            .id = static_cast<uint16_t>(id), .kind = cigi::HeightKind::both, .point = places.next()});
+      };
+      cigi::IgControl control;
+      control.mode = cigi::IgMode::operate;
+      control.hostFrame = frame;
+      (void)socket->send(messageOf(HostProtocol::cigi33, poses.at(frame), frame, frame / kHostRateHz));
+      for (int id = 0; id < kQuestions && !stop.stop_requested();) {
+        cigi::Builder builder({{3, 3}, std::endian::native}, control);
+        const int firstId = id;
+        while (id < kQuestions && ask(builder, id)) ++id;
+        (void)socket->send(builder.take());
+        result.asked += static_cast<uint64_t>(id - firstId);
+      }
+    }
+  });
+  const auto frames = show.show(durationS);
+  asker = {};  // ends it
+  if (!frames) return tl::unexpected(frames.error());
+  // What is still on its way.
+  if (const auto more = show.show(0.5); !more) return tl::unexpected(more.error());
+  for (const ShownFrame& frame : *frames) result.frameMs.push_back(frame.frameMs);
+  result.answered = replies.heard().heights;
+  return result;
+}
+
+}  // namespace eye

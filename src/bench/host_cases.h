@@ -1,0 +1,59 @@
+// The host suite's cases: each connects a host on the loopback and hands back figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/live_show.h"
+#include "link/ground_probe.h"
+
+namespace eye {
+
+// Of one packet that showed, in milliseconds.
+struct TransportDelay {
+  double delayMs = 0;  // from its leaving the host to the end of the first frame that shows it
+  double waitMs = 0;   // of these, before that frame began
+};
+// Frames in which another number shows than in the one before.
+std::vector<TransportDelay> transportDelays(const std::vector<ShownFrame>& frames, const NumberedPoses& poses,
+                                            const SteadyHost& host);
+
+enum class FloodKind { none, elsewhere, garbage, valid };
+
+struct FloodFigures {
+  std::vector<double> frameMs;
+  double sentHz = 0, receivedHz = 0;
+  double followedShare = 0;  // of the frames that show a pose not older than kFollowedS
+  double grownMiB = 0;       // resident memory, from before to after
+};
+inline constexpr double kFloodHz = 100'000;
+inline constexpr double kFollowedS = 0.1;
+// `elsewhere`: to a socket that nobody reads, so that what sending costs the machine can be told from what receiving
+// costs the image generator.
+Result<FloodFigures> showUnderFlood(LiveShow& show, HostProtocol protocol, FloodKind kind, const NumberedPoses& poses,
+                                    double durationS);
+
+// How far the eye was from where the aircraft was at its frames' times, root mean square, metres; without the first
+// seconds, in which the filter learns.
+Result<double> trackErrorM(LiveShow& show, HostProtocol protocol, const std::function<Pose(double)>& poseAt,
+                           double durationS, const BadLinkOptions& link);
+
+inline constexpr int kQuestions = 1000;
+// A thousand heights and a thousand lines of sight round a place, of up to some kilometres.
+std::vector<cigi::GroundQuestion> heightsRound(const Geodetic& place);
+std::vector<cigi::GroundQuestion> sightsRound(const Geodetic& place);
+// The calling thread's time for all of them, when their terrain has been read before, and the longest of one; ms.
+struct AnswerTimes {
+  double allMs = 0, longestMs = 0;
+};
+AnswerTimes timeAnswers(const std::vector<cigi::GroundQuestion>& questions, GroundProbe& probe);
+
+// A CIGI host that asks for a thousand heights with each of its frames.
+struct AskedAndAnswered {
+  uint64_t asked = 0, answered = 0;
+  std::vector<double> frameMs;
+};
+Result<AskedAndAnswered> askHeights(LiveShow& show, const NumberedPoses& poses, const Geodetic& place,
+                                    double durationS);
+
+}  // namespace eye
