@@ -16,7 +16,7 @@
 namespace eye {
 namespace {
 
-constexpr double kLearningS = 1.5;  // of the eye's filter
+constexpr double kLearningS = 1.5;  // of the eye's filter; and until terrain is read
 constexpr double kReachM = 4000;    // of questions round a place
 constexpr double kAboveM = 400;
 constexpr uint32_t kQuestionsSeed = 5;  // any; the same questions in every run
@@ -180,7 +180,7 @@ Result<AskedAndAnswered> askHeights(LiveShow& show, const NumberedPoses& poses, 
   const auto socket = UdpSocket::connectTo({kLoopbackAddress, show.port()});
   if (!socket) return tl::unexpected(socket.error());
   cigi::ReplyListener replies(*socket);
-  AskedAndAnswered result;
+  std::atomic<uint64_t> asked = 0;
   std::jthread asker([&](const std::stop_token& stop) {
     for (uint32_t frame = 0; !stop.stop_requested(); ++frame) {
       (void)replies.awaitStart(100);  // the image generator's pace: a frame's questions for each frame
@@ -197,17 +197,18 @@ Result<AskedAndAnswered> askHeights(LiveShow& show, const NumberedPoses& poses, 
         const int firstId = id;
         while (id < kQuestions && ask(builder, id)) ++id;
         (void)socket->send(builder.take());
-        result.asked += static_cast<uint64_t>(id - firstId);
+        asked += static_cast<uint64_t>(id - firstId);
       }
     }
   });
+  // The first answers wait until their terrain is read.
+  if (const auto read = show.show(kLearningS); !read) return tl::unexpected(read.error());
+  const uint64_t askedBefore = asked, answeredBefore = replies.heard().heights;
   const auto frames = show.show(durationS);
+  AskedAndAnswered result{asked - askedBefore, replies.heard().heights - answeredBefore, {}};
   asker = {};  // ends it
   if (!frames) return tl::unexpected(frames.error());
-  // What is still on its way.
-  if (const auto more = show.show(0.5); !more) return tl::unexpected(more.error());
   for (const ShownFrame& frame : *frames) result.frameMs.push_back(frame.frameMs);
-  result.answered = replies.heard().heights;
   return result;
 }
 
