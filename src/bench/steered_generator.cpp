@@ -33,9 +33,9 @@ Result<SteeredGenerator> SteeredGenerator::create(Options options, bool offline)
   return made;
 }
 
-Result<FrameRecord> SteeredGenerator::frame(const Pose& pose, double timeS) {
+Result<FrameRecord> SteeredGenerator::frame(const Pose& pose, double timeS, bool reads) {
   *pose_ = pose;
-  return generator_->frame(timeS, false, false);
+  return generator_->frame(timeS, reads, reads);
 }
 
 }  // namespace eye

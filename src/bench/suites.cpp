@@ -5,13 +5,15 @@
 namespace eye {
 
 std::span<const Suite> suites() {
-  static constexpr std::array<Suite, 5> kSuites{
+  static constexpr auto kSuites = std::to_array<Suite>(
       {{"culling", "paper 001's Table 5: no culling, frustum, dynamic, by height and size", runCullingSuite},
        {"selector", "a flight through all heights: what the selector loses against the best fixed choice",
         runSelectorSuite},
        {"flight", "paper 000's Table I: fast flights in real time, with and without prediction", runFlightSuite},
        {"panorama", "paper 002's Tables 1 to 3: how well the distances of peaks are told", runPanoramaSuite},
-       {"host", "a host on the loopback: transport delay, floods, bad links, questions", runHostSuite}}};
+       {"host", "a host on the loopback: transport delay, floods, bad links, questions", runHostSuite},
+       {"stability", "figures with limits: heights, poles, lenses, a still eye, a day of clocks, wild states",
+        runStabilitySuite}});
   return kSuites;
 }
 

@@ -32,5 +32,6 @@ Result<SuiteReport> runSelectorSuite(const SuiteOptions& options);
 Result<SuiteReport> runFlightSuite(const SuiteOptions& options);
 Result<SuiteReport> runPanoramaSuite(const SuiteOptions& options);
 Result<SuiteReport> runHostSuite(const SuiteOptions& options);
+Result<SuiteReport> runStabilitySuite(const SuiteOptions& options);
 
 }  // namespace eye

@@ -129,6 +129,18 @@ TEST_CASE("Suite host: every protocol, flood and link, with figures that can be"
   CHECK(received > 1000);
 }
 
+TEST_CASE("Suite stability: every figure has a limit, and keeps within it") {
+  const auto report = quickly(runStabilitySuite);
+  if (!report) return;
+  CHECK(report->summary["failures"] == 0);
+  CHECK(report->rows.size() > 40);
+  for (const auto& row : report->rows) {
+    requireKeys(row, {"case", "figure", "limit", "unit", "holds"});
+    INFO(row.dump());
+    CHECK(row["holds"] == true);
+  }
+}
+
 TEST_CASE("A suite over no database says so") {
   SuiteOptions options;
   options.terrain = "/nowhere/none.eyt";
