@@ -157,16 +157,14 @@ SuiteReport panoramaReport(std::span<const MeasuredPeak> peaks, size_t viewpoint
       {"MAPE (below 1 %; published 16.7 %)", fmt::format("{:.3f} %", 100 * ours.mape), ours.mape < 0.01},
       {"R² (above 0.999; published 0.832)", fmt::format("{:.6f}", ours.r2), ours.r2 > 0.999}};
   report.notes = {
-      "In sight: by a line of sight in double precision on the finest meshes, refraction included, that knows nothing "
-      "of "
-      "the picture. At least 3 km away, at most 150 km.",
+      "In sight: a line of sight in double precision on the finest meshes, refraction included, that ends on the "
+      "summit's own slope a pixel and a half under it; it knows nothing of the picture. From 3 to 150 km.",
       "A summit is the highest ground within 250 m of the gazetteer's place: elevation on a raster cuts summits off, "
-      "and "
-      "gazetteers are a fourth decimal exact.",
+      "and gazetteers are as good as their fourth decimal.",
       "Planar depth is too near by 1 - cos of the angle to the view's axis, 7.6 % at most at the horizon. 24 bits with "
       "the near plane at 10 cm step by 1.5 km at 50 km. Neither gives errors of 40 %, nor distances that are too "
-      "great, "
-      "as most of the published ones are. Degrees of longitude drawn as wide as degrees of latitude do: they stretch "
+      "great, as most of the published ones are. Degrees of longitude drawn as wide as degrees of latitude do: they "
+      "stretch "
       "what lies east and west by 1 / cos(latitude), 38 to 45 % between 43.5 and 46.5 degrees. The paper does not say "
       "where it stood, nor how it laid its terrain out, so this is a cause that fits, not one that is proven."};
   return report;

@@ -20,6 +20,8 @@ namespace {
 constexpr size_t kPairs = 3, kQuickPairs = 1;
 constexpr int kWidthPx = 8192, kQuickWidthPx = 2048;
 constexpr double kVerticalFovDeg = 60;
+// A summit that shows by less is not in sight: the measured pixel lies so far under it, see measuredM.
+constexpr double kUnderPx = 1.5;
 constexpr double kNearestM = 3000, kFarthestM = 150000;
 // Of a viewpoint's peaks so many are tried, spread over all distances.
 constexpr size_t kMostTried = 500, kQuickTried = 60;
@@ -55,7 +57,7 @@ struct Target {
 
 // Peaks in sight, without a look at any picture.
 Result<std::vector<Target>> targetsOf(const Geodetic& eye, const std::vector<Summit>& summits, double refraction,
-                                      size_t most, GroundQuery& ground) {
+                                      double underRad, size_t most, GroundQuery& ground) {
   std::vector<Target> near;
   for (const Summit& summit : summits) {
     const Geodetic place{summit.latDeg, summit.lonDeg, summit.heightM.value_or(0)};
@@ -72,7 +74,7 @@ Result<std::vector<Target>> targetsOf(const Geodetic& eye, const std::vector<Sum
     const Result<Geodetic> top = climb(ground, target.top, kSummitReachM);
     if (!top) return tl::unexpected(top.error());
     if (std::abs(top->altM - target.top.altM) > kSameSummitM) continue;
-    const Result<bool> inSight = isInSight(ground, eye, *top, refraction);
+    const Result<bool> inSight = isInSight(ground, eye, *top, refraction, underRad);
     if (!inSight) return tl::unexpected(inSight.error());
     if (!*inSight) continue;
     target.top = *top;
@@ -132,7 +134,8 @@ Result<SuiteReport> runPanoramaSuite(const SuiteOptions& options) {
     const double share = static_cast<double>(i) / static_cast<double>(viewpoints->size());
     if (options.progress) options.progress(viewpoint.name, share);
     const auto targets =
-        targetsOf(viewpoint.eye, *summits, pano.refraction, options.quick ? kQuickTried : kMostTried, *ground);
+        targetsOf(viewpoint.eye, *summits, pano.refraction, kUnderPx * radFromDeg(pano.frame.degPerPx()),
+                  options.quick ? kQuickTried : kMostTried, *ground);
     if (!targets) return tl::unexpected(targets.error());
     pano.eye = viewpoint.eye;
     const SceneBend bend = sceneBend(pano.eye.latDeg, pano.refraction, pano.earth);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <queue>
 
 #include <fmt/format.h>
@@ -43,35 +44,47 @@ Result<Geodetic> halfWayUp(GroundQuery& ground, const Geodetic& summit) {
 
 }  // namespace
 
+// Best first: a chunk by the height that nothing in it exceeds, its highest vertex once that is known.
 Result<std::vector<Summit>> terrainSummits(const DatabaseReader& reader, size_t most) {
-  const auto lower = [](const ChunkMeta& a, const ChunkMeta& b) { return a.maxHeightM < b.maxHeightM; };
-  std::priority_queue<ChunkMeta, std::vector<ChunkMeta>, decltype(lower)> highest(lower);
-  for (int octant = 0; octant < kOctants; ++octant) {
-    const Result<ChunkMeta> root = reader.readMeta(TileKey::octantRoot(octant));
-    if (!root) return tl::unexpected(root.error());
-    highest.push(*root);
-  }
+  struct Waiting {
+    double heightM = 0;
+    TileKey key;
+    std::optional<Geodetic> top;
+    bool operator<(const Waiting& other) const { return heightM < other.heightM; }
+  };
+  std::priority_queue<Waiting> highest;
+  const auto push = [&](const TileKey& key) -> Result<void> {
+    const Result<ChunkMeta> meta = reader.readMeta(key);
+    if (!meta) return tl::unexpected(meta.error());
+    highest.push({meta->maxHeightM, key, {}});
+    return {};
+  };
+  for (int octant = 0; octant < kOctants; ++octant)
+    if (const auto pushed = push(TileKey::octantRoot(octant)); !pushed) return tl::unexpected(pushed.error());
   std::vector<Summit> summits;
-  while (!highest.empty() && summits.size() < most && highest.top().maxHeightM > 1) {
-    const ChunkMeta meta = highest.top();
+  while (!highest.empty() && summits.size() < most && highest.top().heightM > 1) {
+    const Waiting next = highest.top();
     highest.pop();
-    if (meta.childCount > 0 && meta.key.level() < kSummitLevel) {
-      for (const TileKey& key : meta.key.children()) {
-        const Result<ChunkMeta> child = reader.readMeta(key);
-        if (!child) return tl::unexpected(child.error());
-        highest.push(*child);
-      }
+    if (next.top) {
+      const Geodetic& top = *next.top;
+      const bool isNew = std::ranges::none_of(summits, [&](const Summit& s) {
+        return apartM(s.latDeg, s.lonDeg, top.latDeg, top.lonDeg) < kSummitsApartM;
+      });
+      if (isNew) summits.push_back({fmt::format("{:.0f} m", top.altM), top.latDeg, top.lonDeg, top.altM});
       continue;
     }
-    const Result<StoredChunk> stored = reader.read(meta.key);
+    const Result<StoredChunk> stored = reader.read(next.key);
     if (!stored) return tl::unexpected(stored.error());
-    const Result<ChunkMesh> mesh = decodeMesh(stored->mesh, meta.key);
+    if (stored->meta.childCount > 0 && next.key.level() < kSummitLevel) {
+      for (const TileKey& key : next.key.children())
+        if (const auto pushed = push(key); !pushed) return tl::unexpected(pushed.error());
+      continue;
+    }
+    const Result<ChunkMesh> mesh = decodeMesh(stored->mesh, next.key);
     if (!mesh) return tl::unexpected(mesh.error());
     const std::vector<Geodetic> vertices = vertexPositions(*mesh, stored->meta);
     const Geodetic top = *std::ranges::max_element(vertices, {}, &Geodetic::altM);
-    const bool isNew = std::ranges::none_of(
-        summits, [&](const Summit& s) { return apartM(s.latDeg, s.lonDeg, top.latDeg, top.lonDeg) < kSummitsApartM; });
-    if (isNew) summits.push_back({fmt::format("{:.0f} m", top.altM), top.latDeg, top.lonDeg, top.altM});
+    highest.push({top.altM, next.key, top});
   }
   return summits;
 }
@@ -96,9 +109,11 @@ Result<std::vector<Viewpoint>> summitViewpoints(std::vector<Summit> summits, siz
   return viewpoints;
 }
 
-Result<bool> isInSight(GroundQuery& ground, const Geodetic& eye, const Geodetic& top, double refraction) {
-  constexpr double kStepM = 5000, kOwnSlopeM = 300, kOverTopM = 3;
-  const Vec3d end = offsetEnu(eye, {top.latDeg, top.lonDeg, top.altM + kOverTopM}, EarthShape::ellipsoid);
+Result<bool> isInSight(GroundQuery& ground, const Geodetic& eye, const Geodetic& top, double refraction,
+                       double underRad) {
+  constexpr double kStepM = 5000, kOwnSlopeM = 1000;
+  Vec3d end = offsetEnu(eye, top, EarthShape::ellipsoid);
+  end.z -= underRad * glm::length(end);
   const Vec3d eyeEcefM = ecefFromGeodetic(eye), topEcefM = ecefFromGeodetic(top);
   const Mat3d axes = ecefFromEnu(eye.latDeg, eye.lonDeg);
   const double levelSquared = end.x * end.x + end.y * end.y, bendPerM = refraction / (2 * kMeanEarthRadiusM);
@@ -113,7 +128,7 @@ Result<bool> isInSight(GroundQuery& ground, const Geodetic& eye, const Geodetic&
     if (!hit) return tl::unexpected(hit.error());
     if (*hit) return glm::distance(ecefFromGeodetic((*hit)->position), topEcefM) < kOwnSlopeM;
   }
-  return true;
+  return false;  // past the top
 }
 
 }  // namespace eye

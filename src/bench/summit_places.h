@@ -22,8 +22,10 @@ struct Viewpoint {
 // viewpoints each. Fewer where there are not so many.
 Result<std::vector<Viewpoint>> summitViewpoints(std::vector<Summit> summits, size_t pairs, GroundQuery& ground);
 
-// Whether the top shows, in double precision on the finest meshes, along the bent ray: a parabola in steps of 5 km, of
-// which each is straight. `refraction`: k. A ray that ends on the top's own slope, within 300 m, counts.
-Result<bool> isInSight(GroundQuery& ground, const Geodetic& eye, const Geodetic& top, double refraction);
+// Whether the top shows by more than `underRad` of angle, in double precision on the finest meshes, along the bent ray
+// so far under it: a parabola in steps of 5 km, of which each is straight. It must meet the top's own slope, within a
+// kilometre, and nothing before. `refraction`: k.
+Result<bool> isInSight(GroundQuery& ground, const Geodetic& eye, const Geodetic& top, double refraction,
+                       double underRad);
 
 }  // namespace eye

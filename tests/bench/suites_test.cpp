@@ -141,6 +141,25 @@ TEST_CASE("Suite stability: every figure has a limit, and keeps within it") {
   }
 }
 
+TEST_CASE("Suite panorama: every method's shares and metrics, and the published ones") {
+  const auto report = quickly(runPanoramaSuite);
+  if (!report) return;
+  requireKeys(report->summary, {"mape", "r2", "rmse_m", "peaks"});
+  REQUIRE(report->summary["peaks"] > 3);
+  CHECK(report->summary["mape"] < 0.03);
+  CHECK(report->rows.size() == 5 * 5 + 4);
+  for (const auto& row : report->rows) {
+    requireKeys(row, {"method", "camera", "within", "peaks"});
+    CHECK(row["within"].size() == 8);
+    if (row["method"] != "range" || row["camera"] != "all") continue;
+    CHECK(row["within"][0] > 0.98);
+    CHECK(row["peaks"] == report->summary["peaks"]);
+  }
+  CHECK(report->rows.back()["camera"] == "lower_regression");
+  CHECK(report->tables.size() == 3);
+  CHECK(report->plots.size() == 2);
+}
+
 TEST_CASE("A suite over no database says so") {
   SuiteOptions options;
   options.terrain = "/nowhere/none.eyt";
