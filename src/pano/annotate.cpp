@@ -67,7 +67,9 @@ void drawRidges(Panorama& panorama) {
       const double here = panorama.distanceM[pixel], behind = panorama.distanceM[frame.at(column, row - 1)];
       if (std::isnan(here)) continue;
       const double leap = std::isnan(behind) ? 1 : std::log2(std::max(behind / here, 1.0));
-      if (leap < kRidgeShare * 1.44) continue;
+      // A plain seen at a grazing angle gets farther row by row: a ridge leaps by more than that.
+      const double below = panorama.distanceM[frame.at(column, std::min(row + 1, frame.heightPx - 1))];
+      if (leap < kRidgeShare * 1.44 + 2 * std::log2(std::max(here / below, 1.0))) continue;
       const double ink = std::isnan(behind) ? kSkylineInk : kRidgeInk * std::sqrt(std::min(leap, 1.0));
       for (size_t c = 0; c < 3; ++c) {
         const double value = panorama.rgba[pixel * 4 + c];

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kMetresPerDeg = 111200;
 // Where ground and gazetteer differ by more, the terrain does not have this summit: outside of its data, say.
-constexpr double kSameSummitM = 300;
+// Of a low hill less: it is not the plain beyond the data.
+constexpr double kSameSummitM = 300, kSameSummitShare = 0.25, kSameHillM = 50;
 // Something nearer by more than this hides a summit: the share covers the hillside under a flat top, the metres an eye
 // that stands on the mountain's own shoulder.
 constexpr double kHiddenShare = 0.05, kHiddenM = 150;
@@ -118,7 +119,8 @@ Result<std::vector<PanoramaPeak>> findPeaks(const Panorama& panorama, const Pano
       const Sighting drawn = sightingOf(options.eye, peak.ground, bend, options.earth);
       peak.x = frame.xOf(drawn.azimuthDeg), peak.y = frame.yOf(drawn.elevationDeg), peak.groundM = drawn.distanceM;
       peak.measuredM = measuredM(panorama, peak.x, peak.y);
-      peak.visible = std::abs(peak.ground.altM - peak.summit.altM) < kSameSummitM && !std::isnan(peak.measuredM) &&
+      const double sameM = std::min(kSameSummitM, kSameHillM + kSameSummitShare * std::abs(peak.summit.altM));
+      peak.visible = std::abs(peak.ground.altM - peak.summit.altM) < sameM && !std::isnan(peak.measuredM) &&
                      !isHidden(peak.measuredM, peak.groundM);
     }
     peaks.push_back(std::move(peak));
