@@ -125,6 +125,7 @@ BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery,
   plan.imagery = imagery;
   plan.textureSize = options.textureSize;
   plan.region = options.region;
+  plan.shard = options.shard;
   int naturalLevel = 0;
   while (naturalLevel < kMaxLevel && cellHeightDeg(naturalLevel) > kLeafPosts * finestSpacingDeg) ++naturalLevel;
   int pictureLevel = 0;

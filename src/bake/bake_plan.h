@@ -16,6 +16,11 @@ inline constexpr int kLeafPosts = 8;
 // error.
 inline constexpr double kFinestErrorM = 0.25;
 
+// One of several processes that share a bake, see shard.h.
+struct Shard {
+  int index = 1, count = 1;  // 1 to count
+};
+
 // The sources outlive the plan. Thread: any number at once.
 struct BakePlan {
   const ElevationSurface* surface = nullptr;
@@ -25,6 +30,7 @@ struct BakePlan {
   int meshLevel = 0;  // the level whose tolerance is finestErrorM; below it only imagery refines
   double finestErrorM = kFinestErrorM;
   std::optional<TileBounds> region;  // refine only what meets it
+  std::optional<Shard> shard;        // make only this part
 
   double toleranceM(int level) const;
   bool hasImagery(const TileKey& key) const;
@@ -39,6 +45,7 @@ struct PlanOptions {
   std::optional<int> maxLevel;
   std::optional<double> errorM;
   std::optional<TileBounds> region;
+  std::optional<Shard> shard;
 };
 
 // `finestSpacingDeg`: of all elevation sources.

@@ -5,6 +5,7 @@
 #include "bake/bake_estimate.h"
 #include "bake/mesher.h"
 #include "bake/ordered_parallel.h"
+#include "bake/shard.h"
 #include "bake/tile_painter.h"
 
 namespace eye {
@@ -25,8 +26,10 @@ using BakedFamily = Result<std::vector<StoredChunk>>;
 class Writing {
  public:
   Writing(const BakePlan& plan, DatabaseWriter& writer, const BakeControl& control)
-      : plan_(plan), writer_(writer), control_(control) {
-    if (control.progress) most_ = mostTiles(plan);
+      : plan_(plan), mine_(plan), writer_(writer), control_(control) {
+    if (!control.progress) return;
+    most_ = mostTiles(plan);
+    for (size_t level = 0; level < most_.size(); ++level) most_[level] *= mine_.share(static_cast<int>(level));
   }
 
   // Tells which members are to have children.
@@ -38,7 +41,7 @@ class Writing {
       if (auto put = writer_.putChunk(chunk); !put) return put;
       ++progress_.baked;
       progress_.bytes += chunk.mesh.size() + chunk.imagery.size();
-      if (plan_.wantsChildren(chunk.meta.key, chunk.meta.geometricErrorM)) parents.push_back(chunk.meta.key);
+      if (makesChildren(chunk.meta)) parents.push_back(chunk.meta.key);
     }
     if (family.parent) {
       if (auto set = writer_.setChildren(*family.parent, static_cast<int>(chunks.size())); !set) return set;
@@ -54,7 +57,7 @@ class Writing {
       const auto meta = writer_.readMeta(key);
       if (!meta) return tl::unexpected(meta.error());
       if (!*meta) return fail(ErrorKind::badData, key.name() + " is missing from the database; bake it anew");
-      if ((*meta)->childCount > 0 || plan_.wantsChildren(key, (*meta)->geometricErrorM)) parents.push_back(key);
+      if ((*meta)->childCount > 0 || makesChildren(**meta)) parents.push_back(key);
     }
     progress_.tiles += family.members.size();
     return {};
@@ -88,7 +91,12 @@ class Writing {
   bool shouldStop() const { return control_.stop != nullptr && control_.stop->load(); }
 
  private:
+  bool makesChildren(const ChunkMeta& meta) const {
+    return plan_.wantsChildren(meta.key, meta.geometricErrorM) && mine_.bakesBelow(meta.key);
+  }
+
   const BakePlan& plan_;
+  const ShardTiles mine_;
   DatabaseWriter& writer_;
   const BakeControl& control_;
   std::vector<double> most_;  // tiles by level, at most

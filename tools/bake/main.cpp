@@ -10,6 +10,8 @@
 
 #include "bake/bake_job.h"
 #include "bake/demo_terrain.h"
+#include "bake/merge.h"
+#include "bake/shard.h"
 #include "base/version.h"
 #include "inspect.h"
 #include "progress.h"
@@ -32,6 +34,8 @@ constexpr const char* kAbout =
     "        in order of preference: where the lidar ends, the folder of tiles goes on, then the globe\n"
     "  eyepoint-bake --elevation srtm/ --region 19,49,21,50 --error 0.5 --out small.eyt\n"
     "  eyepoint-bake --elevation srtm/ --out alps.eyt --resume      after a kill or a full disk\n"
+    "  eyepoint-bake --elevation srtm/ --shard 1/16 --out part1.eyt   one of 16 processes or machines\n"
+    "  eyepoint-bake merge alps.eyt part*.eyt                       joins them\n"
     "  eyepoint-bake info alps.eyt\n"
     "  eyepoint-bake verify alps.eyt\n"
     "  eyepoint-bake demo --out demo.eyt";
@@ -39,9 +43,10 @@ constexpr const char* kAbout =
 struct Arguments {
   BakeJob job;
   int jobs = 0;  // 0: one a core
-  std::string region;
+  std::string region, shard;
   std::string logLevel = "info";
-  std::string file;  // of info and verify
+  std::string file;                 // of info and verify; what merge makes
+  std::vector<std::string> shards;  // that merge joins
   bool json = false;
 };
 
@@ -60,6 +65,11 @@ TileBounds parseRegion(const std::string& text) {
                                            text));
   }
   return region;
+}
+
+std::string checkShard(const std::string& text) {
+  return parseShard(text) ? ""
+                          : fmt::format("'{}' is no shard; give I/N, such as 2/16, N at most {}", text, kMostShards);
 }
 
 std::string checkTextureSize(const std::string& text) {
@@ -109,6 +119,9 @@ void addBakeOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Validator(checkTextureSize, "POWER OF TWO"))
       ->type_name("N");
   app.add_option("--region", arguments.region, "Refine only here, degrees")->type_name("W,S,E,N");
+  app.add_option("--shard", arguments.shard, "Bake only part I of N; eyepoint-bake merge joins the parts")
+      ->check(CLI::Validator(checkShard, ""))
+      ->type_name("I/N");
   app.add_option("--vertical-datum", job.verticalDatum,
                  "What the heights are above: egm84, egm96, egm2008 or a file of geoid undulations (.gtx, .tif, .pgm); "
                  "they become heights above the WGS84 ellipsoid. Default: heights as they are")
@@ -148,6 +161,15 @@ Result<void> runDemo(Arguments& arguments) {
   return runJob(arguments);
 }
 
+Result<void> runMerge(const Arguments& arguments) {
+  ProgressPrinter printer;
+  const Result<void> merged = mergeShards(arguments.file, arguments.shards, [&printer](uint64_t done, uint64_t total) {
+    printer.showShare("merged", done, total);
+  });
+  if (merged) spdlog::info("{}: done; look at it with: eyepoint --terrain {}", arguments.file, arguments.file);
+  return merged;
+}
+
 int report(const Result<void>& result) {
   if (result) return 0;
   fmt::print(stderr, "eyepoint-bake: {}\n", result.error().message);
@@ -170,17 +192,21 @@ int main(int argc, char** argv) {
   info->add_flag("--json", arguments.json, "One JSON object");
   CLI::App* verifying = app.add_subcommand("verify", "Check every checksum and invariant; exit 1 on the first damage");
   verifying->add_option("FILE", arguments.file, "The database")->required();
+  CLI::App* merge = app.add_subcommand("merge", "Join the shards of one bake");
+  merge->add_option("OUT", arguments.file, "The database to write; it must not exist")->required();
+  merge->add_option("IN", arguments.shards, "Every shard, see --shard")->required();
   CLI::App* demo = app.add_subcommand("demo", "Bake the embedded demo terrain");
   addCommonOptions(*demo, arguments);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
     if (!arguments.region.empty()) arguments.job.plan.region = parseRegion(arguments.region);
-    const bool inspects = info->parsed() || verifying->parsed();
-    if (!inspects && !demo->parsed() && arguments.job.elevation.empty()) {
+    if (!arguments.shard.empty()) arguments.job.plan.shard = parseShard(arguments.shard);
+    const bool bakes = !info->parsed() && !verifying->parsed() && !merge->parsed();
+    if (bakes && !demo->parsed() && arguments.job.elevation.empty()) {
       throw CLI::RequiredError("--elevation SRC... (see --help for examples)");
     }
-    if (!inspects && arguments.job.out.empty()) throw CLI::RequiredError("--out FILE.eyt");
+    if (bakes && arguments.job.out.empty()) throw CLI::RequiredError("--out FILE.eyt");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     fmt::print(stderr, "eyepoint-bake: {}\n", error.what());
@@ -197,5 +223,6 @@ int main(int argc, char** argv) {
     if (sound) fmt::print("{}: sound\n", arguments.file);
     return report(sound);
   }
+  if (merge->parsed()) return report(runMerge(arguments));
   return report(demo->parsed() ? runDemo(arguments) : runJob(arguments));
 }
