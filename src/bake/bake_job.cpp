@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "bake/elevation_mosaic.h"
+#include "bake/shard.h"
 #include "bake/vertical_datum.h"
 
 namespace eye {
@@ -22,6 +23,7 @@ std::string describe(const BakeJob& job) {
     const TileBounds& r = *job.plan.region;
     text += fmt::format("; region: {},{},{},{}", r.westDeg, r.southDeg, r.eastDeg, r.northDeg);
   }
+  if (job.plan.shard) text += describeShard(*job.plan.shard);
   return text;
 }
 
@@ -61,7 +63,10 @@ Result<BakeOutcome> runBake(const BakeJob& job, BakeControl control) {
   report(surface);
   for (const ImageryFile& file : (*imagery)->files()) {
     spdlog::info("{}: {} x {} pixels of {:.4g}\"{}", file.path, file.grid.columns, file.grid.rows,
-                 file.grid.latStepDeg * 3600, file.warped ? ", warped to WGS84" : "");
+                 file.grid.latStepDeg * 3600,
+                 file.warped          ? ", warped to WGS84"
+                 : file.takenForGlobe ? ", without georeference: taken for the whole globe"
+                                      : "");
   }
 
   const BakePlan plan =

@@ -44,7 +44,35 @@ Result<ImageryFile> describe(const std::string& path) {
                       path, GDALGetDataTypeName(dataset.GetRasterBand(band)->GetRasterDataType()), path));
     }
   }
-  return ImageryFile{path, raster->grid, raster->warped, dataset.GetRasterCount() >= 3 ? 3 : 1};
+  return ImageryFile{path, raster->grid, raster->warped, raster->takenForGlobe, dataset.GetRasterCount() >= 3 ? 3 : 1};
+}
+
+bool goesAround(const GeoGrid& grid) {
+  return std::abs(grid.lonStepDeg * grid.columns - 360) < grid.lonStepDeg * 1e-3;
+}
+
+// The pixels of a window, in one run; across the date line of a picture of the whole globe in two.
+struct ColumnRuns {
+  struct Run {
+    int first = 0, pixels = 0;
+  };
+  int left = 0;  // of the window, below 0 where it begins beyond the first column
+  std::vector<Run> runs;
+  int pixels() const { return runs.size() == 2 ? runs[0].pixels + runs[1].pixels : runs.front().pixels; }
+};
+
+// Two runs are whole multiples of `thinning` long, so that both are thinned alike.
+ColumnRuns columnRuns(int left, int right, int columns, bool around, int thinning) {
+  const int seam = left < 0 ? 0 : columns;
+  if (around && left < seam && right > seam) {
+    const auto multiple = [&](int pixels) { return (pixels + thinning - 1) / thinning * thinning; };
+    const int before = multiple(seam - left), behind = multiple(right - seam);
+    if (before + behind <= columns) return {seam - before, {{columns - before, before}, {0, behind}}};
+  }
+  left = std::clamp(left, 0, columns);
+  right = std::clamp(right, 0, columns);
+  if (left >= right) return {};
+  return {left, {{left, right - left}}};
 }
 
 }  // namespace
@@ -88,20 +116,28 @@ Result<Patch> ImageryMosaic::Impl::read(size_t file, const TileBounds& region, d
   const auto clampTo = [](double value, int count) { return static_cast<int>(std::clamp(value, 0.0, double(count))); };
   const int top = clampTo(std::floor((northEdgeDeg - region.northDeg - marginLat) / grid.latStepDeg), grid.rows);
   const int bottom = clampTo(std::ceil((northEdgeDeg - region.southDeg + marginLat) / grid.latStepDeg), grid.rows);
-  const int left = clampTo(std::floor((region.westDeg - marginLon - westEdgeDeg) / grid.lonStepDeg), grid.columns);
-  const int right = clampTo(std::ceil((region.eastDeg + marginLon - westEdgeDeg) / grid.lonStepDeg), grid.columns);
+  // Kept within a turn of the globe, which an int holds.
+  const auto column = [&](double lonDeg) {
+    return std::clamp((lonDeg - westEdgeDeg) / grid.lonStepDeg, -1.0 * grid.columns, 2.0 * grid.columns);
+  };
+  const int leftmost = static_cast<int>(std::floor(column(region.westDeg - marginLon)));
+  const int rightmost = static_cast<int>(std::ceil(column(region.eastDeg + marginLon)));
+  const int thinning = std::max(1, static_cast<int>(texelLonDeg / grid.lonStepDeg));
+  const ColumnRuns across = columnRuns(leftmost, rightmost, grid.columns, goesAround(grid), thinning);
   Patch patch;
-  if (top >= bottom || left >= right) return patch;
+  if (top >= bottom || across.runs.empty()) return patch;
 
   const auto thinned = [](int pixels, double pixelDeg, double texelDeg) {
     return static_cast<int>(std::ceil(pixels / std::max(1.0, texelDeg / pixelDeg)));
   };
+  const int pixelsAcross = across.pixels();
+  const bool isWhole = across.runs.size() == 1;
   patch.rows = thinned(bottom - top, grid.latStepDeg, texelLatDeg);
-  patch.columns = thinned(right - left, grid.lonStepDeg, texelLonDeg);
+  patch.columns = isWhole ? thinned(pixelsAcross, grid.lonStepDeg, texelLonDeg) : pixelsAcross / thinning;
   patch.northDeg = northEdgeDeg - top * grid.latStepDeg;
-  patch.westDeg = westEdgeDeg + left * grid.lonStepDeg;
+  patch.westDeg = westEdgeDeg + across.left * grid.lonStepDeg;
   patch.rowDeg = (bottom - top) * grid.latStepDeg / patch.rows;
-  patch.columnDeg = (right - left) * grid.lonStepDeg / patch.columns;
+  patch.columnDeg = pixelsAcross * grid.lonStepDeg / patch.columns;
 
   Result<GeoRaster> raster = take(file);
   if (!raster) return tl::unexpected(raster.error());
@@ -112,8 +148,16 @@ Result<Patch> ImageryMosaic::Impl::read(size_t file, const TileBounds& region, d
   how.eResampleAlg = GRIORA_Average;
   const auto readBand = [&](GDALRasterBand* band, std::vector<uint8_t>& values) {
     values.resize(static_cast<size_t>(patch.rows) * static_cast<size_t>(patch.columns));
-    return band->RasterIO(GF_Read, left, top, right - left, bottom - top, values.data(), patch.columns, patch.rows,
-                          GDT_Byte, 0, 0, &how) == CE_None;
+    int patchColumn = 0;
+    for (const ColumnRuns::Run& run : across.runs) {
+      const int columns = isWhole ? patch.columns : run.pixels / thinning;
+      if (band->RasterIO(GF_Read, run.first, top, run.pixels, bottom - top, &values[static_cast<size_t>(patchColumn)],
+                         columns, patch.rows, GDT_Byte, 0, patch.columns, &how) != CE_None) {
+        return false;
+      }
+      patchColumn += columns;
+    }
+    return true;
   };
   bool ok = readBand(dataset.GetRasterBand(1), patch.red);
   if (files[file].colourBands == 3) {

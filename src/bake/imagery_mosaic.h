@@ -17,6 +17,7 @@ struct ImageryFile {
   std::string path;
   GeoGrid grid;  // posts are pixel centres
   bool warped = false;
+  bool takenForGlobe = false;
   int colourBands = 3;  // 1 grey or 3
 };
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "raster/gdal.h"
+#include "raster/tms_folder.h"
 
 namespace eye {
 namespace fs = std::filesystem;
@@ -42,6 +43,13 @@ void addArchive(const std::string& path, std::vector<std::string>& found) {
   }
 }
 
+Result<void> addTmsFolder(const std::string& folder, std::vector<std::string>& found) {
+  Result<std::string> raster = rasterOfTmsFolder(folder);
+  if (!raster) return tl::unexpected(raster.error());
+  found.push_back(std::move(*raster));
+  return {};
+}
+
 void addFile(const std::string& path, std::vector<std::string>& found) {
   if (isRaster(path)) {
     found.push_back(path);
@@ -57,6 +65,10 @@ Result<std::vector<std::string>> findRasters(const std::string& source) {
   GdalMessages quiet;
   std::vector<std::string> found;
   std::error_code error;
+  if (isTmsFolder(source)) {
+    if (auto added = addTmsFolder(source, found); !added) return tl::unexpected(added.error());
+    return found;
+  }
   if (!fs::is_directory(source, error)) {
     addFile(source, found);
     if (!found.empty()) return found;
@@ -72,6 +84,10 @@ Result<std::vector<std::string>> findRasters(const std::string& source) {
       continue;
     }
     std::error_code ignored;
+    if (it->is_directory(ignored) && isTmsFolder(it->path())) {
+      it.disable_recursion_pending();
+      if (auto added = addTmsFolder(it->path(), found); !added) return tl::unexpected(added.error());
+    }
     if (it->is_regular_file(ignored) && !isSidecar(it->path())) addFile(it->path(), found);
   }
   if (error) return fail(ErrorKind::io, fmt::format("{}: cannot read the folder: {}", source, error.message()));

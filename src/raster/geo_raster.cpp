@@ -144,6 +144,10 @@ Result<GeoGrid> suggestGrid(GDALDataset& source, const std::string& path) {
   return grid;
 }
 
+bool isTwiceAsWide(GDALDataset& dataset) {
+  return dataset.GetRasterXSize() == 2 * dataset.GetRasterYSize();
+}
+
 Error noGeoreference(const std::string& path) {
   return {ErrorKind::badData,
           fmt::format("{}: has no georeference; give it one: gdal_translate -a_srs EPSG:4326 -a_ullr WEST NORTH EAST "
@@ -163,7 +167,10 @@ Result<GeoRaster> openGeoRaster(const std::string& path, RasterUse use) {
   std::array<double, 6> transform{};
   const bool hasTransform = raster.source->GetGeoTransform(transform.data()) == CE_None;
   const bool hasSystem = raster.source->GetSpatialRef() != nullptr;
-  if (!hasTransform && raster.source->GetGCPCount() == 0) return tl::unexpected(noGeoreference(path));
+  if (!hasTransform && raster.source->GetGCPCount() == 0) {
+    raster.takenForGlobe = use == RasterUse::imagery && !hasSystem && isTwiceAsWide(*raster.source);
+    if (!raster.takenForGlobe) return tl::unexpected(noGeoreference(path));
+  }
 
   const bool hasPalette = raster.source->GetRasterBand(1)->GetColorTable() != nullptr;
   if (use == RasterUse::imagery && hasPalette) {
@@ -171,6 +178,11 @@ Result<GeoRaster> openGeoRaster(const std::string& path, RasterUse use) {
     if (!raster.view) {
       return fail(ErrorKind::badData, fmt::format("{}: cannot expand its palette: {}", path, messages.failure()));
     }
+  }
+  if (raster.takenForGlobe) {
+    const int columns = raster.source->GetRasterXSize(), rows = raster.source->GetRasterYSize();
+    raster.grid = gridOf({-180, 360.0 / columns, 0, 90, 0, -180.0 / rows}, columns, rows);
+    return raster;
   }
   if (hasTransform && isPlainLatLon(*raster.source, transform)) {
     raster.grid = gridOf(transform, raster.source->GetRasterXSize(), raster.source->GetRasterYSize());

@@ -25,12 +25,14 @@ struct GeoRaster {
   Dataset view;  // warped or palette-expanded view of `source`; none where that is used as it is
   GeoGrid grid;
   bool warped = false;
+  bool takenForGlobe = false;  // has no georeference
   GDALDataset& dataset() const { return view ? *view : *source; }
 };
 
 // Row 0 of the dataset is the northernmost. For elevation the warped view is Float32 with NaN as NoData; for imagery it
 // has an alpha band, and a palette is expanded to RGBA. A raster without georeference is an error that says how to give
-// it one.
+// it one; but a picture exactly twice as wide as high is the whole globe in latitude and longitude, north up, from the
+// date line to the date line, which is how pictures of the globe are passed around.
 Result<GeoRaster> openGeoRaster(const std::string& path, RasterUse use);
 
 }  // namespace eye
