@@ -9,13 +9,16 @@
 namespace eye {
 namespace {
 
-// A scalar in the words of the command line; nothing for dates and tables.
+// A scalar in the words of the command line; nothing for times and tables.
 std::optional<ConfigWord> wordOf(const toml::node& node) {
   if (const auto* text = node.as_string()) return ConfigWord{text->get(), ConfigType::text};
   if (const auto* number = node.as_integer()) return ConfigWord{std::to_string(number->get()), ConfigType::number};
   if (const auto* number = node.as_floating_point())
     return ConfigWord{fmt::format("{}", number->get()), ConfigType::number};
   if (const auto* flag = node.as_boolean()) return ConfigWord{flag->get() ? "true" : "false", ConfigType::flag};
+  if (const auto* date = node.as_date())
+    return ConfigWord{fmt::format("{:04}-{:02}-{:02}", date->get().year, date->get().month, date->get().day),
+                      ConfigType::text};
   return std::nullopt;
 }
 

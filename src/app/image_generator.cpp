@@ -19,8 +19,6 @@ namespace {
 constexpr double kDefaultVisibilityM = 60000;
 constexpr double kTimeOfDayH = 9;
 constexpr double kFrameBudgetMs = 1000.0 / 60;
-// The date of --time-of-day: an equinox, when the sun rises due east at six everywhere.
-constexpr int kYear = 2026, kMonth = 3, kDay = 20;
 
 double processCpuMs() {
   timespec time{};
@@ -155,11 +153,14 @@ View ImageGenerator::currentView(const Pose& pose, const ViewEdges& hosts) const
 
 Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
   Lighting lighting;
-  const bool hostsClock = !options_.timeOfDayH && host.julianDayUtc;
-  const double julianDay = hostsClock ? *host.julianDayUtc
-                                      : julianDayFromLocalSolarTime(options_.timeOfDayH.value_or(kTimeOfDayH),
-                                                                    pose_.position.lonDeg, kYear, kMonth, kDay);
+  const CalendarDate date = options_.date.value_or(kDefaultDate);
+  const bool hostsClock = host.julianDayUtc && !options_.timeOfDayH && !options_.utcH && !options_.date;
+  const double julianDay = hostsClock      ? *host.julianDayUtc
+                           : options_.utcH ? eye::julianDay(date.year, date.month, date.day + *options_.utcH / 24)
+                                           : julianDayFromLocalSolarTime(options_.timeOfDayH.value_or(kTimeOfDayH),
+                                                                         pose_.position.lonDeg, date);
   lighting.sunDirectionEcef = sunDirectionEcef(julianDay);
+  lighting.siderealRad = siderealRad(julianDay);
   lighting.visibilityM = options_.visibilityM.value_or(host.visibilityM.value_or(kDefaultVisibilityM));
   return lighting;
 }

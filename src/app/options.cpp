@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -165,6 +166,21 @@ void setBackground(Options& options, const std::string& text) {
   options.background = glm::vec3(glm::dvec3((*n)[0], (*n)[1], (*n)[2]));
 }
 
+void setDate(Options& options, const std::string& text) {
+  const auto n = text.size() == 10 ? splitNumbers(text, '-', 3) : std::nullopt;
+  const auto whole = [&](size_t i) { return static_cast<int>((*n)[i]); };
+  if (n) options.date = CalendarDate{whole(0), whole(1), whole(2)};
+  const bool valid =
+      n && whole(0) >= 1900 && whole(0) <= 2100 &&
+      std::chrono::year_month_day(std::chrono::year(whole(0)), std::chrono::month(static_cast<unsigned>(whole(1))),
+                                  std::chrono::day(static_cast<unsigned>(whole(2))))
+          .ok() &&
+      fmt::format("{:04}-{:02}-{:02}", whole(0), whole(1), whole(2)) == text;
+  if (!valid)
+    throw CLI::ValidationError(
+        "--date", fmt::format("'{}' is no date; give YYYY-MM-DD from 1900 to 2100, such as 2026-06-21", text));
+}
+
 bool onOff(const std::string& name, const std::string& text) {
   if (text == "on" || text == "true") return true;
   if (text == "off" || text == "false") return false;
@@ -324,9 +340,18 @@ void addQuality(CLI::App& app, Options& o) {
       ->type_name("MIB")
       ->check(wholeWithin(16, 1 << 20))
       ->group(group);
-  app.add_option("--time-of-day", o.timeOfDayH, "Local solar time, hours; default the host's, else 9")
+  app.add_option("--time-of-day", o.timeOfDayH, "Local solar time at the eye, hours; default the host's, else 9")
       ->type_name("H")
       ->check(within(0.0, 24.0))
+      ->group(group);
+  app.add_option("--utc", o.utcH, "Universal time instead, hours: one sun for the whole globe")
+      ->type_name("H")
+      ->check(within(0.0, 24.0))
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--date", [&o](const std::string& t) { setDate(o, t); },
+         "The sun's date, 1900 to 2100; default the host's, else 2026-03-20, an equinox")
+      ->type_name("YYYY-MM-DD")
       ->group(group);
   app.add_option("--visibility", o.visibilityM, "Meteorological visibility, metres; default the host's, else 60000")
       ->type_name("M")
@@ -402,8 +427,10 @@ Result<void> applyConfig(CLI::App& app, const std::string& path) {
   // Two options that say the same thing win over both of the file's keys.
   const auto given = [&](const char* name) { return app.get_option(name)->count() > 0; };
   const bool stateGiven = given("--pose") || given("--host"), frustumGiven = given("--fov") || given("--frustum");
+  const bool hoursGiven = given("--time-of-day") || given("--utc");
   for (const auto& [key, words] : *values) {
-    if ((stateGiven && (key == "pose" || key == "host")) || (frustumGiven && (key == "fov" || key == "frustum")))
+    if ((stateGiven && (key == "pose" || key == "host")) || (frustumGiven && (key == "fov" || key == "frustum")) ||
+        (hoursGiven && (key == "time-of-day" || key == "utc")))
       continue;
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       const std::string nearest = nearestWord(key, known);
@@ -519,6 +546,8 @@ ParsedOptions parseOptions(int argc, const char* const* argv) {
   }
   if (!options.pose.empty() && !options.hosts.empty())
     return refuse("--pose and --host both say where the eye is; give one of them");
+  if (options.timeOfDayH && options.utcH)
+    return refuse("--time-of-day and --utc both say what time it is; give one of them");
   if (!options.pose.empty()) options.hosts.push_back("pose://" + options.pose);
   return parsed;
 }

@@ -10,6 +10,7 @@
 #include "app/debug_view.h"
 #include "base/error.h"
 #include "control/selector_rules.h"
+#include "geo/sun.h"
 #include "paging/lod_select.h"
 
 namespace eye {
@@ -60,9 +61,10 @@ struct Options {
   HostDelayMode hostDelay = HostDelayMode::automatic;
   double hostDelayMs = 0;  // with HostDelayMode::fixed
 
-  // Light and air. Local solar time at the eye, hours; unset: the host's clock, else 9. Unset visibility: the host's,
-  // else 60 km.
-  std::optional<double> timeOfDayH;
+  // Light and air. Local solar time at the eye, or UTC, in hours of the date; none of the three set: the host's clock,
+  // else 9 local. Unset visibility: the host's, else 60 km.
+  std::optional<double> timeOfDayH, utcH;
+  std::optional<CalendarDate> date;  // unset: kDefaultDate
   std::optional<double> visibilityM;
 
   // Outputs.

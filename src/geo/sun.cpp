@@ -45,7 +45,6 @@ EquatorialDeg apparentSun(double centuries) {
   };
 }
 
-// How far the Earth has turned under the stars: the right ascension over the zero meridian.
 double apparentSiderealDeg(double julianDayUtc) {
   const double days = julianDayUtc - kJ2000, t = days / kDaysInCentury;
   const double nutation = -0.00478 * sinDeg(lunarNodeDeg(t)) * cosDeg(obliquityDeg(t));
@@ -68,10 +67,14 @@ Vec3d sunDirectionEcef(double julianDayUtc) {
                sinDeg(sun.declination));
 }
 
-double julianDayFromLocalSolarTime(double hours, double lonDeg, int year, int month, double day) {
+double siderealRad(double julianDayUtc) {
+  return radFromDeg(std::remainder(apparentSiderealDeg(julianDayUtc), 360.0));
+}
+
+double julianDayFromLocalSolarTime(double hours, double lonDeg, const CalendarDate& date) {
   // Mean solar time first, which a sundial is up to 17 minutes off; then the sun itself says by how much. The equation
   // of time changes by 30 s a day at most, so one correction leaves less than a second.
-  const double meanJd = julianDay(year, month, day) + (hours - lonDeg / 15.0) / 24.0;
+  const double meanJd = julianDay(date.year, date.month, date.day) + (hours - lonDeg / 15.0) / 24.0;
   const Vec3d sun = sunDirectionEcef(meanJd);
   const double dialHours = 12.0 + (lonDeg - degFromRad(std::atan2(sun.y, sun.x))) / 15.0;
   return meanJd + std::remainder(hours - dialHours, 24.0) / 24.0;

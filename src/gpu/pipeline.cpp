@@ -37,6 +37,9 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
   vk::PipelineColorBlendAttachmentState target;
   target.setColorWriteMask(vk::ColorComponentFlagBits::eR | vk::ColorComponentFlagBits::eG |
                            vk::ColorComponentFlagBits::eB | vk::ColorComponentFlagBits::eA);
+  target.setBlendEnable(spec.adds);
+  target.setSrcColorBlendFactor(vk::BlendFactor::eOne).setDstColorBlendFactor(vk::BlendFactor::eOne);
+  target.setSrcAlphaBlendFactor(vk::BlendFactor::eZero).setDstAlphaBlendFactor(vk::BlendFactor::eOne);
   vk::PipelineColorBlendStateCreateInfo blend;
   blend.setAttachments(target);
   const std::array dynamicStates{vk::DynamicState::eViewport, vk::DynamicState::eScissor};

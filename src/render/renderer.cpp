@@ -170,6 +170,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     impl.resizeTargets(input.view.widthPx, input.view.heightPx);
     impl.lists->reserve(*impl.gpu, input.draws.size());
     impl.scene->frame() = frameData(input);
+    impl.scene->placeStars(input);
     const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
     if (impl.debug) impl.debug->prepare(*impl.gpu, input, *impl.pools, *impl.cullLists, impl.options.textureSize);
     const bool culls = impl.prepareCulling(input);

@@ -7,6 +7,8 @@
 #include "gpu/pipeline.h"
 #include "spirv/sky_frag.h"
 #include "spirv/sky_vert.h"
+#include "spirv/star_frag.h"
+#include "spirv/star_vert.h"
 #include "spirv/terrain_frag.h"
 #include "spirv/terrain_tint_frag.h"
 #include "spirv/terrain_tint_vert.h"
@@ -89,11 +91,25 @@ PipelineSpec skySpec() {
   return spec;
 }
 
+PipelineSpec starSpec() {
+  PipelineSpec spec;
+  spec.vertexSpirv = k_star_vert;
+  spec.fragmentSpirv = k_star_frag;
+  spec.bindings = {{0, sizeof(StarInstance), vk::VertexInputRate::eInstance}};
+  spec.attributes = {{0, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(StarInstance, ndc)},
+                     {1, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(StarInstance, direction_eye)}};
+  spec.depth = DepthUse::whereNothing;
+  spec.adds = true;
+  return spec;
+}
+
 }  // namespace
 
 ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat,
                      bool withTints, const std::optional<SceneBend>& bend) {
   frame_ = createBuffer(gpu, sizeof(shader::FrameData), vk::BufferUsageFlagBits::eUniformBuffer, MemoryUse::upload);
+  starBuffer_ = createBuffer(gpu, stars().size() * sizeof(StarInstance), vk::BufferUsageFlagBits::eVertexBuffer,
+                             MemoryUse::upload);
   sampler_ = createSampler(gpu);
   setLayout_ = createSetLayout(gpu);
   const std::array sizes{vk::DescriptorPoolSize(Type::eUniformBuffer, 1),
@@ -113,6 +129,7 @@ ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
   terrain_ = make(std::move(terrain));
   if (withTints) tinted_ = make(tintedSpec());
   sky_ = make(skySpec());
+  star_ = make(starSpec());
   const vk::DescriptorBufferInfo frame(*frame_.buffer, 0, VK_WHOLE_SIZE);
   gpu.device.updateDescriptorSets(vk::WriteDescriptorSet(*set_, EYE_BIND_FRAME, 0, Type::eUniformBuffer, {}, frame),
                                   nullptr);
@@ -122,6 +139,11 @@ void ScenePass::bindTextures(const GpuDevice& gpu, const GpuImage& textures) {
   const vk::DescriptorImageInfo info(*sampler_, *textures.view, vk::ImageLayout::eShaderReadOnlyOptimal);
   gpu.device.updateDescriptorSets(
       vk::WriteDescriptorSet(*set_, EYE_BIND_TEXTURES, 0, Type::eCombinedImageSampler, info), nullptr);
+}
+
+void ScenePass::placeStars(const FrameInput& input) {
+  eye::placeStars(input, placedStars_);
+  std::ranges::copy(placedStars_, starBuffer_.as<StarInstance>().begin());
 }
 
 void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass,
@@ -183,6 +205,11 @@ void ScenePass::drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::Com
 void ScenePass::drawSky(const vk::raii::CommandBuffer& commands) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *sky_);
   commands.draw(3, 1, 0, 0);
+  if (placedStars_.empty()) return;
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *star_);
+  commands.bindVertexBuffers(0, *starBuffer_.buffer, {0});
+  constexpr uint32_t kSpotVertices = 6;
+  commands.draw(kSpotVertices, static_cast<uint32_t>(placedStars_.size()), 0, 0);
 }
 
 }  // namespace eye

@@ -4,6 +4,7 @@
 #include "geo/scene_bend.h"
 #include "render/chunk_pools.h"
 #include "render/draw_lists.h"
+#include "render/star_field.h"
 #include "render/targets.h"
 
 namespace eye {
@@ -17,6 +18,7 @@ class ScenePass {
             const std::optional<SceneBend>& bend);
 
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
+  void placeStars(const FrameInput& input);  // those that drawSky draws
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
   // One render pass, or more that go on with what the first has drawn, or draw it over: begin, draw, end.
@@ -30,6 +32,7 @@ class ScenePass {
   // As drawTerrain, both faces, in the tints that the draws' records bring, see TintLists.
   void drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
                   const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t count) const;
+  // With the stars, if any show.
   void drawSky(const vk::raii::CommandBuffer& commands) const;
   void end(const vk::raii::CommandBuffer& commands) const { commands.endRendering(); }
 
@@ -38,13 +41,14 @@ class ScenePass {
                 const ChunkPools& pools, const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first,
                 uint32_t count) const;
 
-  GpuBuffer frame_;
+  GpuBuffer frame_, starBuffer_;
+  std::vector<StarInstance> placedStars_;
   vk::raii::Sampler sampler_{nullptr};
   vk::raii::DescriptorSetLayout setLayout_{nullptr};
   vk::raii::DescriptorPool pool_{nullptr};
   vk::raii::DescriptorSet set_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};
-  vk::raii::Pipeline terrain_{nullptr}, tinted_{nullptr}, sky_{nullptr};
+  vk::raii::Pipeline terrain_{nullptr}, tinted_{nullptr}, sky_{nullptr}, star_{nullptr};
 };
 
 }  // namespace eye

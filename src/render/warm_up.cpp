@@ -42,6 +42,7 @@ Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
   };
   auto drawn = renderer.drawFrame(input);
   input.depthMapPx = glm::ivec2(32, 24);
+  input.lighting.sunDirectionEcef = {-1, 0, 0};  // night: the stars are out
   if (options.debugViews) {
     input.tint = Tint::level;
     input.showDepthMap = true;

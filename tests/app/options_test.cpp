@@ -50,6 +50,29 @@ TEST_CASE("the command line sets what it says") {
   CHECK(o.hosts == std::vector<std::string>{"pose://1,2,3,4,5,6"});
 }
 
+TEST_CASE("the sun's date and hours: local or universal, on the command line or in a file") {
+  const ParsedOptions parsed = parse({"--date", "2026-06-21", "--utc", "14.5"});
+  REQUIRE_FALSE(parsed.exitStatus);
+  REQUIRE(parsed.options.date);
+  CHECK(parsed.options.date->month == 6);
+  CHECK(parsed.options.date->day == 21);
+  CHECK(*parsed.options.utcH == 14.5);
+  CHECK(parse({"--date", "2024-02-29"}).options.date->day == 29);
+  for (const char* date : {"2023-02-29", "2026-13-01", "26-01-01", "2026-1-1", "2026-01-01x", "1800-01-01", "today"})
+    CHECK(parse({"--date", date}).exitStatus == 2);
+  CHECK(parse({"--utc", "12", "--time-of-day", "12"}).exitStatus == 2);
+
+  const TomlFile file("utc = 3.0\ndate = 2026-12-21");
+  const ParsedOptions fromFile = parse({"--config", file.path.c_str()});
+  REQUIRE_FALSE(fromFile.exitStatus);
+  CHECK(*fromFile.options.utcH == 3);
+  CHECK(fromFile.options.date->month == 12);
+  const ParsedOptions hoursWin = parse({"--config", file.path.c_str(), "--time-of-day", "9"});
+  REQUIRE_FALSE(hoursWin.exitStatus);
+  CHECK_FALSE(hoursWin.options.utcH);
+  CHECK(*hoursWin.options.timeOfDayH == 9);
+}
+
 TEST_CASE("debug views are words with commas, and keys switch them") {
   const ParsedOptions parsed = parse({"--debug-view", "freeze,fate"});
   REQUIRE_FALSE(parsed.exitStatus);

@@ -62,7 +62,7 @@ TEST_CASE("at a local solar time the sun has that hour angle") {
     for (const double hours : {0.0, 3.25, 6.0, 12.0, 18.0, 23.99, 24.0})
       for (const int month : {2, 3, 11}) {
         CAPTURE(lon, hours, month);
-        const double jd = julianDayFromLocalSolarTime(hours, lon, 2024, month, 11);
+        const double jd = julianDayFromLocalSolarTime(hours, lon, {2024, month, 11});
         const double second = 1.0 / 3600;
         CHECK(std::abs(std::remainder(dialHours(jd, lon) - hours, 24.0)) < second);
         // The date is the local one.

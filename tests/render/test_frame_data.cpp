@@ -36,6 +36,43 @@ TEST_CASE("a chunk of the finest lattice seen from the Moon's distance does not 
   CHECK(glm::distance(seen, truth) / glm::length(truth) < 1e-6);
 }
 
+// A known point of the ground, from 62,763 km down to 2 m, as the vertex shader computes it, against double precision.
+TEST_CASE("on the way down from space a point stays where it is, and comes nearer without a jump") {
+  const Vec3d ground = ecefFromGeodetic({36.63, 128.335, 30});
+  FrameInput input;
+  double beforePx = 0, beforeM = 1e9;
+  for (double heightM = 62'763'000; heightM >= 2; heightM *= 0.9) {
+    // Beside the point, so that it lies off the view's axis, three quarters of the way to the picture's rim.
+    const Vec3d eye = ecefFromGeodetic({36.63, 128.335, 30 + heightM});
+    const double side = 0.4 * heightM;
+    input.view = makeView({geodeticFromEcef(eye + side * ecefFromEnu(36.63, 128.335)[0]), 0, -90, 0},
+                          symmetricFrustum(60, 1024, 1024, 1), 1024, 1024);
+    const shader::FrameData frame = frameData(input);
+    const Vec3d truth = input.view.eyeFromEcef * (ground - input.view.eyeEcefM);
+    const auto pixels = [&](double tan) { return (tan / input.view.frustum.tanRight + 1) * 512; };
+    for (const double stepM : {16.0, 1.0, 1.0 / 64}) {
+      ChunkDraw draw;
+      draw.stepM = stepM;
+      draw.originLattice = latticeFromEcef(ground, stepM);
+      const shader::DrawData data = drawData(draw, input.view.eyeEcefM, 128);
+      // What rounding to the lattice moved is the chunk's affair.
+      const Vec3d lattice = input.view.eyeFromEcef * (ecefFromLattice(draw.originLattice, stepM) - input.view.eyeEcefM);
+      const glm::vec3 relative = glm::vec3(data.originMinusEyeCell) * data.stepM - data.eyeFractionM;
+      const glm::vec4 clip = frame.clipFromEcef * glm::vec4(relative, 1.0f);
+      INFO(heightM << " m up, step " << stepM);
+      CHECK(std::abs((clip.x / clip.w + 1) * 512 - pixels(lattice.x / lattice.z)) < 0.01);
+      CHECK(std::abs((clip.y / clip.w + 1) * 512 - pixels(lattice.y / lattice.z)) < 0.01);
+      CHECK(std::abs(double(clip.w) / lattice.z - 1) < 1e-6);
+    }
+    // The eye moves along one ray from the point: the picture of the point hardly moves from height to height.
+    const double nowPx = pixels(truth.x / truth.z);
+    if (heightM < 1e6 && beforePx > 0) CHECK(std::abs(nowPx - beforePx) < 1.5);
+    CHECK(truth.z < beforeM);
+    beforePx = nowPx;
+    beforeM = truth.z;
+  }
+}
+
 TEST_CASE("the outermost texels' centres lie on a chunk's edges, also through an ancestor's part") {
   ChunkDraw draw;
   const shader::DrawData own = drawData(draw, {}, 128);

@@ -6,7 +6,9 @@
 
 #include <fstream>
 
+#include "geo/sun.h"
 #include "render/scene.h"
+#include "render/star_field.h"
 
 using namespace eye;
 using namespace eye::test;
@@ -116,6 +118,107 @@ TEST_CASE("pictures from under the sea to far in space have no holes and no spar
     if (altM < 20000) CHECK(frame->rgba[2] > 60);
   }
   CHECK(renderer->validationMessages() == 0);
+}
+
+TEST_CASE("seen from space one half of the globe is lit, where the sun says so") {
+  RendererOptions options;
+  options.widthPx = options.heightPx = 240;
+  const auto renderer = makeRenderer(options);
+  if (!renderer) return;
+  std::vector<ChunkDraw> draws;
+  for (int south = -80; south < 80; south += 20) {
+    for (int west = -180; west < 180; west += 20) {
+      const Patch patch{double(south), double(west), double(south + 20), double(west + 20), 24, 128};
+      draws.push_back(
+          addChunk(*renderer, makeChunk(
+                                  patch, [](double, double) { return 0.0; }, flatTexture(128, 120, 120, 120))));
+    }
+  }
+  const Pose pose{{0, 30, 20e6}, 0, -90, 0};
+  FrameInput input = lookFrom(pose, 240, 240, 40);
+  input.draws = draws;
+  // Noon at Greenwich on midsummer's day; then three hours before midnight.
+  for (const double hoursUtc : {12.0, 21.0}) {
+    const double jd = julianDay(2026, 6, 21 + hoursUtc / 24);
+    input.lighting.sunDirectionEcef = sunDirectionEcef(jd);
+    input.lighting.siderealRad = siderealRad(jd);
+    const auto frame = renderer->drawFrame(input);
+    REQUIRE(frame.has_value());
+    keepPicture(*frame, fmt::format("terminator_{:.0f}", hoursUtc));
+    size_t lit = 0, dark = 0;
+    for (double latDeg = -50; latDeg <= 50; latDeg += 10) {
+      for (double lonDeg = -20; lonDeg <= 80; lonDeg += 10) {
+        const Vec3d place = ecefFromGeodetic({latDeg, lonDeg, 0});
+        const Vec3d seen = input.view.eyeFromEcef * (place - input.view.eyeEcefM);
+        const auto pixelOf = [&](double tan) {
+          return static_cast<size_t>((tan / input.view.frustum.tanRight + 1) * 120);
+        };
+        const size_t at = 4 * (pixelOf(seen.y / seen.z) * 240 + pixelOf(seen.x / seen.z));
+        const int green = frame->rgba[at + 1];
+        const double sunHeight = glm::dot(upAt(latDeg, lonDeg), input.lighting.sunDirectionEcef);
+        INFO(latDeg << " N " << lonDeg << " E, sine of the sun's height " << sunHeight << ", green " << green);
+        if (sunHeight > 0.25) CHECK(green > 70), ++lit;
+        if (sunHeight < -0.3) CHECK(green < 45), ++dark;
+      }
+    }
+    CHECK(lit + dark > 50);
+    CHECK((hoursUtc == 12.0 ? lit : dark) > 20);
+  }
+}
+
+TEST_CASE("stars: beyond the Earth and by night, where they belong; by day the sky is as it was") {
+  RendererOptions options;
+  options.widthPx = options.heightPx = 240;
+  options.validate = true;
+  const auto renderer = makeRenderer(options);
+  if (!renderer) return;
+  const auto look = [&](const Pose& pose, const Vec3d& sunEcef, const std::string& name) {
+    FrameInput input = lookFrom(pose, 240, 240, 60);
+    input.lighting.sunDirectionEcef = sunEcef;
+    const auto frame = renderer->drawFrame(input);
+    REQUIRE(frame.has_value());
+    keepPicture(*frame, name);
+    std::vector<StarInstance> placed;
+    placeStars(input, placed);
+    size_t found = 0;
+    for (const StarInstance& star : placed) {
+      if (star.brightness < 0.4f) continue;
+      const auto x = static_cast<size_t>((star.ndc.x + 1) * 120), y = static_cast<size_t>((star.ndc.y + 1) * 120);
+      const size_t at = 4 * (std::min<size_t>(y, 239) * 240 + std::min<size_t>(x, 239));
+      found += frame->rgba[at + 1] > 40;
+    }
+    return std::pair(found, placed.size());
+  };
+  const Pose up{{10, 30, 100}, 0, 60, 0}, space{{10, 30, 400e3}, 0, 40, 0};
+  const Vec3d overhead = upAt(10, 30);
+  const auto night = look(up, -overhead, "stars_night"), day = look(up, overhead, "stars_day");
+  CHECK(night.first > 3);
+  CHECK(night.second > 100);
+  CHECK(day.second == 0);                                    // none is drawn: the day's sky costs and shows what it did
+  const auto beyond = look(space, overhead, "stars_space");  // the sun behind, the Earth below the picture
+  CHECK(beyond.first > 3);
+  CHECK(renderer->validationMessages() == 0);
+}
+
+TEST_CASE("stars stand still in the sky while the Earth turns, Polaris over the pole") {
+  const auto nearest = [](const Vec3d& ecef, double siderealTurn) {
+    double best = -1;
+    Vec3d found{};
+    for (const Star& star : stars()) {
+      const Vec3d& d = star.direction;
+      const Vec3d turned(std::cos(siderealTurn) * d.x + std::sin(siderealTurn) * d.y,
+                         std::cos(siderealTurn) * d.y - std::sin(siderealTurn) * d.x, d.z);
+      if (star.brightness > 0.4f && glm::dot(turned, ecef) > best) best = glm::dot(turned, ecef), found = turned;
+    }
+    return std::pair(degFromRad(std::acos(std::min(best, 1.0))), found);
+  };
+  CHECK(nearest({0, 0, 1}, 1.0).first < 1);
+  // Sirius culminates when the sidereal time is its right ascension, 6 h 45 m: in the meridian, at its declination.
+  const double turn = 6.752 / 12 * 3.14159265358979;
+  CHECK(nearest(upAt(-16.72, 0), turn).first < 0.1);
+  // Four minutes earlier every day: after a day of the sun the stars are a degree ahead.
+  CHECK(degFromRad(std::remainder(siderealRad(2460001.0) - siderealRad(2460000.0), 6.283185307179586)) ==
+        Approx(0.9856).margin(1e-3));
 }
 
 TEST_CASE("neither seams nor far mip levels show where textures meet") {
