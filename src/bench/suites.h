@@ -30,6 +30,7 @@ std::span<const Suite> suites();  // in the order in which `all` runs them
 Result<SuiteReport> runCullingSuite(const SuiteOptions& options);
 Result<SuiteReport> runSelectorSuite(const SuiteOptions& options);
 Result<SuiteReport> runFlightSuite(const SuiteOptions& options);
+Result<SuiteReport> runGlobeSuite(const SuiteOptions& options);
 Result<SuiteReport> runPanoramaSuite(const SuiteOptions& options);
 Result<SuiteReport> runHostSuite(const SuiteOptions& options);
 Result<SuiteReport> runStabilitySuite(const SuiteOptions& options);

@@ -85,15 +85,16 @@ double smootherStep(double u) {
   return u * u * u * (u * (6 * u - 15) + 10);
 }
 
-constexpr double kDescentS = 75, kDescentFromM = 2e7, kDescentToM = 2500;
+// From the farthest of paper 004's five views down to the runway, where the eye stops at a child's height.
+constexpr double kDescentS = 120, kDescentFromM = 62'763'000, kDescentToM = 2;
 
-// The height falls by the same factor each second, so that the ground comes nearer evenly; the view rises to the
-// horizon.
+// Straight down. The height above the runway falls by the same factor each second but for a soft start and end, so that
+// the ground comes nearer evenly; the view rises to the horizon and turns along the runway.
 Pose descentAt(double timeS) {
   const double u = smootherStep(std::clamp(timeS / kDescentS, 0.0, 1.0));
-  const double altM = kDescentFromM * std::pow(kDescentToM / kDescentFromM, u);
-  constexpr double kEndSouthM = 14'000, kEndPitchDeg = -12;
-  return {placeAt(0, -kEndSouthM * u, altM), 0, -90 + (90 + kEndPitchDeg) * u, 0};
+  const double heightM = kDescentFromM * std::pow(kDescentToM / kDescentFromM, u);
+  constexpr double kStartOfRunwayM = -1350;
+  return {placeAt(kStartOfRunwayM, 0, kDemoRunwayElevationM + heightM), kDemoRunwayHeadingDeg * u, -90 * (1 - u), 0};
 }
 
 }  // namespace
@@ -107,7 +108,7 @@ const std::vector<Scenario>& scenarios() {
       {"orbit", "one turn around the airfield, 6 km out", kOrbitS, orbitAt},
       {"approach", "three degrees down to the runway, flare and roll-out", approach().durationS(),
        [](double t) { return approach().poseAt(t); }},
-      {"descent-from-space", "from 20,000 km straight down to the mountains", kDescentS, descentAt},
+      {"descent-from-space", "from 62,763 km straight down to 2 m above the runway", kDescentS, descentAt},
       {kDefaultScenario, "take-off, climb and a low-level turn: what demo:// flies", tour().durationS(),
        [](double t) { return tour().poseAt(t); }},
   };

@@ -138,6 +138,26 @@ TEST_CASE("Suite stability: every figure has a limit, and keeps within it") {
     requireKeys(row, {"case", "figure", "limit", "unit", "holds"});
     INFO(row.dump());
     CHECK(row["holds"] == true);
+}
+
+TEST_CASE("Suite globe: the paper's five distances, and flights over the poles and along the date line") {
+  const auto report = quickly(runGlobeSuite);
+  if (!report) return;
+  REQUIRE(report->rows.size() == 5);
+  for (size_t i = 0; i < 5; ++i) {
+    const auto& row = report->rows[i];
+    requireKeys(row, {"distance_km", "level", "blocks", "visible", "culled_share", "fps", "published_culled_share"});
+    CHECK(row["level"] == row["published_level"]);
+    CHECK(row["blocks"] == row["published_blocks"]);  // also below where the small database ends
+    CHECK(row["visible"] > 0);
+    CHECK(row["visible"] <= row["blocks"]);
+    CHECK(row["fps"] > 0);
+  }
+  REQUIRE(report->summary["flights"].size() == 3);
+  for (const auto& flight : report->summary["flights"]) {
+    CHECK(flight["frames"] > 0);
+    CHECK(flight["frames_looked_at"] > 0);
+    CHECK(flight["hole_pixels"] == 0);
   }
 }
 

@@ -35,7 +35,7 @@ TEST_CASE("every scenario is smooth, plausible, and never below the runway") {
       REQUIRE(turnDeg < 20 * kFrameS);                    // 20 degrees/s, a jet's roll
       REQUIRE(std::abs(turnDeg - beforeTurnDeg) < 0.01);  // no kink
       REQUIRE(std::abs(now.rollDeg) < 46);
-      REQUIRE(now.position.altM >= kDemoRunwayElevationM + 3.9);
+      REQUIRE(now.position.altM >= kDemoRunwayElevationM + (scenario.name == "descent-from-space" ? 1.999 : 3.9));
       REQUIRE((now.position.latDeg > kDemoSouthDeg && now.position.latDeg < kDemoNorthDeg));
       REQUIRE((now.position.lonDeg > kDemoWestDeg && now.position.lonDeg < kDemoEastDeg));
       before = now;
@@ -71,6 +71,22 @@ TEST_CASE("take-off begins and approach ends on the runway, along it") {
   for (double t = 113; t < approach->durationS; t += 0.5) CHECK(onRunway(approach->poseAt(t)));
   const Pose glide = approach->poseAt(50);
   CHECK(glide.pitchDeg == Approx(-3).margin(0.1));
+}
+
+TEST_CASE("descent-from-space comes down from 62,763 km to 2 m and never rises") {
+  const auto descent = findScenario("descent-from-space");
+  CHECK(descent->poseAt(0).position.altM - kDemoRunwayElevationM == Approx(62'763'000));
+  CHECK(descent->poseAt(0).pitchDeg == Approx(-90));
+  const Pose end = descent->poseAt(descent->durationS);
+  CHECK(end.position.altM - kDemoRunwayElevationM == Approx(2));
+  CHECK(end.pitchDeg == Approx(0).margin(1e-9));
+  CHECK(end.headingDeg == Approx(kDemoRunwayHeadingDeg));
+  double beforeM = 1e9;
+  for (double t = 0; t <= descent->durationS; t += 1.0 / 60) {
+    const double altM = descent->poseAt(t).position.altM;
+    REQUIRE(altM <= beforeM);
+    beforeM = altM;
+  }
 }
 
 TEST_CASE("orbit can be looped") {

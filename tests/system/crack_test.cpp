@@ -194,12 +194,13 @@ TEST_CASE("cracks: none at poles, date line and where the columns halve, on a ro
     EyePose pose;
     pose.at.latDeg = std::clamp(latitudes[random() % std::size(latitudes)] + near, -90.0, 90.0);
     pose.at.lonDeg = longitudes[random() % std::size(longitudes)];
-    pose.at.altM = 7000 * std::pow(300, unit(random));  // to 2,100 km
+    pose.at.altM = 7000 * std::pow(9000, unit(random));  // to 63,000 km
     pose.headingDeg = 360 * unit(random);
     if (i % 3 != 0) {
       pose.pitchDeg = -90 * unit(random);
       pose.rollDeg = 120 * unit(random) - 60;
     }
+    if (pose.at.altM > 2'000'000) pose.pitchDeg = -90 + 25 * unit(random);  // from there the globe is a ball
     poses.push_back(pose);
   }
   checkPoses("cracks_globe", database, poses);
