@@ -15,10 +15,10 @@ void main() {
   outFromCentre = corner;
   vec3 ray_eye = inRayBrightness.xyz;
   float rise = dot(ray_eye, frame.up_eye.xyz);
-  // Through the air, and drowned by a sky brighter than itself.
-  float through = exp(-frame.airDepth.g * skyColumn(rise));
+  // Through the air, whose depth is given as displayed, and drowned by a sky brighter than itself.
+  float through = exp(-0.25 * frame.airDepth.g * skyColumn(rise));
   vec3 sky = skyColour(ray_eye);
-  float dark = max(1.0 - 5.0 * max(max(sky.r, sky.g), sky.b), 0.0);
+  float dark = max(1.0 - 3.0 * max(max(sky.r, sky.g), sky.b), 0.0);
   outBrightness = inRayBrightness.w * through * dark;
   gl_Position = vec4(inNdcHalf.xy + inNdcHalf.zw * corner, EYE_CLEAR_DEPTH, 1.0);
 }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <thread>
 
 #include "bench/flight_run.h"
@@ -13,20 +14,25 @@ namespace {
 constexpr double kRateHz = 25;
 constexpr size_t kLookEvery = 10;  // frames; a look reads the depth back and goes over all pixels
 
-// 12 degrees on either side of a pole along the meridians 30 and -150, at 30 km.
-Pose overPole(double share, double sign) {
-  constexpr double kArcDeg = 12, kAltM = 30'000, kMeridianDeg = 30;
-  const double fromPoleDeg = kArcDeg * (1 - 2 * share);  // below 0 beyond it
-  const bool beyond = fromPoleDeg < 0;
+constexpr double kSpeedMS = 8000, kAltM = 30'000;  // as fast as an orbit, and as low as balloons fly
+constexpr double kMetresPerDegree = 111'195;
+
+// Along the meridians 30 and -150; `alongM` is 0 over the pole.
+Pose overPole(double alongM, double sign) {
+  constexpr double kMeridianDeg = 30, kPitchDeg = -20;
+  const bool beyond = alongM > 0;
   const double headingDeg = (sign > 0) == beyond ? 180 : 0;
-  return {{sign * (90 - std::abs(fromPoleDeg)), beyond ? kMeridianDeg - 180 : kMeridianDeg, kAltM}, headingDeg, -8, 0};
+  return {{sign * (90 - std::abs(alongM) / kMetresPerDegree), beyond ? kMeridianDeg - 180 : kMeridianDeg, kAltM},
+          headingDeg,
+          kPitchDeg,
+          0};
 }
 
-// Along longitude 180, swinging a degree to both sides, at 100 km.
-Pose alongDateLine(double share) {
-  constexpr double kFromDeg = -60, kToDeg = 60, kAltM = 100'000, kSwings = 6;
-  const double eastDeg = std::sin(share * kSwings * 6.283185307179586);
-  return {{kFromDeg + (kToDeg - kFromDeg) * share, eastDeg > 0 ? eastDeg - 180 : eastDeg + 180, kAltM}, 0, -25, 0};
+// Northwards along longitude 180, in bends over it.
+Pose alongDateLine(double alongM) {
+  constexpr double kLatDeg = 52, kBendDeg = 0.1, kBendM = 60'000, kPitchDeg = -20;
+  const double eastDeg = kBendDeg * std::sin(2 * std::numbers::pi * alongM / kBendM);
+  return {{kLatDeg + alongM / kMetresPerDegree, eastDeg > 0 ? eastDeg - 180 : eastDeg + 180, kAltM}, 0, kPitchDeg, 0};
 }
 
 // Pixels whose ray meets the ellipsoid lowered to under all ground, and where nothing was drawn.
@@ -52,8 +58,8 @@ size_t holesIn(const ImageGenerator& generator, double depthM) {
 }  // namespace
 
 const std::array<GlobeFlight, 3> kGlobeFlights{{
-    {"over the north pole", [](double share) { return overPole(share, 1); }},
-    {"over the south pole", [](double share) { return overPole(share, -1); }},
+    {"over the north pole", [](double alongM) { return overPole(alongM, 1); }},
+    {"over the south pole", [](double alongM) { return overPole(alongM, -1); }},
     {"along the date line", alongDateLine},
 }};
 
@@ -66,14 +72,14 @@ Result<GlobeFlightFigures> flyOverGlobe(SteeredGenerator& generator, const Globe
   const auto elapsedS = [&] { return static_cast<double>(monotonicNs() - beganNs) * 1e-9; };
   for (uint64_t slot = 0; slot <= slots;) {
     const double timeS = static_cast<double>(slot) / kRateHz;
-    const bool looks = figures.frames++ % kLookEvery == 0;
-    const Result<FrameRecord> record = generator.frame(flight.poseAt(timeS / durationS), timeS, looks);
+    const bool reads = figures.frames++ % kLookEvery == 0;
+    const Result<FrameRecord> record = generator.frame(flight.poseAt(kSpeedMS * (timeS - durationS / 2)), timeS, reads);
     if (!record) return tl::unexpected(record.error());
-    if (looks) {
+    if (!reads) frameMs.push_back(record->frameMs);
+    // While an octant stands in for finer chunks, its surface lies far below the ground.
+    if (reads && record->selection.missing == 0) {
       ++figures.framesLookedAt;
       figures.holes += holesIn(generator.generator(), depthM);
-    } else {
-      frameMs.push_back(record->frameMs);
     }
     if (timeS >= startS && record->selection.missing > 0) ++figures.missingAfterStart;
     slot = nextSlot(slot, elapsedS(), 1 / kRateHz);
