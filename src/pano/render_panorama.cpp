@@ -17,9 +17,9 @@ namespace {
 constexpr double kSsePx = 1;
 
 Lighting lightingOf(const PanoramaOptions& options) {
-  constexpr int kYear = 2026, kJune = 6, kSolstice = 21;
-  const double julianDay = julianDayFromLocalSolarTime(options.timeOfDayH, options.eye.lonDeg, kYear, kJune, kSolstice);
-  return {sunDirectionEcef(julianDay), options.visibilityM};
+  constexpr CalendarDate kSolstice{2026, 6, 21};
+  const double julianDay = julianDayFromLocalSolarTime(options.timeOfDayH, options.eye.lonDeg, kSolstice);
+  return {sunDirectionEcef(julianDay), options.visibilityM, siderealRad(julianDay)};
 }
 
 // Selects and loads until all that the view needs is there.

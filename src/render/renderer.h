@@ -59,8 +59,8 @@ struct ChunkDraw {
 
 struct Lighting {
   Vec3d sunDirectionEcef{0, 0, 1};  // unit, towards the sun
-  double siderealRad = 0;           // how far the Earth has turned under the stars
   double visibilityM = 50000;  // meteorological: contrast falls to 5 % (Koschmieder: extinction = 2.996 / visibility)
+  double siderealRad = 0;      // how far the Earth has turned under the stars
 };
 
 struct FrameInput {
