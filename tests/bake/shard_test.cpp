@@ -133,7 +133,7 @@ TEST_CASE("A shard that is killed goes on where it was, and the whole is the sam
   const pid_t child = ::fork();
   if (child == 0) {
     (void)run(job, [](const BakeProgress& progress) {
-      if (progress.baked > 150) ::kill(::getpid(), SIGKILL);
+      if (progress.baked > 40) ::kill(::getpid(), SIGKILL);
     });
     ::_exit(0);
   }
