@@ -138,6 +138,7 @@ TEST_CASE("Suite stability: every figure has a limit, and keeps within it") {
     requireKeys(row, {"case", "figure", "limit", "unit", "holds"});
     INFO(row.dump());
     CHECK(row["holds"] == true);
+  }
 }
 
 TEST_CASE("Suite globe: the paper's five distances, and flights over the poles and along the date line") {
