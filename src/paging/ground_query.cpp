@@ -55,6 +55,7 @@ GroundHit hitAt(const Vec3d& ecefM, const Vec3d& a, const Vec3d& b, const Vec3d&
 struct Waiting {
   double enters = 0;
   TileKey key;
+  bool hasChildren = false;
   bool operator>(const Waiting& other) const { return enters > other.enters; }
 };
 
@@ -66,20 +67,23 @@ Result<GroundQuery> GroundQuery::open(const std::string& databasePath) {
   return GroundQuery(std::move(*reader));
 }
 
-Result<ChunkMeta> GroundQuery::metaOf(const TileKey& key) {
-  if (const auto found = metas_.find(key.code()); found != metas_.end()) return found->second;
-  Result<ChunkMeta> meta = reader_.readMeta(key);
-  if (!meta) return meta;
+Result<const ChunkMeta*> GroundQuery::metaOf(const TileKey& key) {
+  if (const auto found = metas_.find(key.code()); found != metas_.end()) return &found->second;
+  const Result<ChunkMeta> meta = reader_.readMeta(key);
+  if (!meta) return tl::unexpected(meta.error());
   if (metas_.size() >= kMostMetas) metas_.clear();
-  metas_.emplace(key.code(), *meta);
-  return meta;
+  return &metas_.emplace(key.code(), *meta).first->second;
+}
+
+const GroundQuery::Mesh* GroundQuery::keptMeshOf(const TileKey& key) {
+  const auto found = meshes_.find(key.code());
+  if (found == meshes_.end()) return nullptr;
+  uses_.splice(uses_.begin(), uses_, found->second.use);
+  return &found->second.mesh;
 }
 
 Result<const GroundQuery::Mesh*> GroundQuery::meshOf(const TileKey& key) {
-  if (const auto found = meshes_.find(key.code()); found != meshes_.end()) {
-    uses_.splice(uses_.begin(), uses_, found->second.use);
-    return &found->second.mesh;
-  }
+  if (const Mesh* kept = keptMeshOf(key)) return kept;
   const Result<StoredChunk> stored = reader_.read(key);
   if (!stored) return tl::unexpected(stored.error());
   const Result<ChunkMesh> decoded = decodeMesh(stored->mesh, key);
@@ -87,9 +91,11 @@ Result<const GroundQuery::Mesh*> GroundQuery::meshOf(const TileKey& key) {
   Mesh mesh;
   const double stepM = stored->meta.stepM();
   mesh.originEcefM = ecefFromLattice(stored->meta.originLattice, stepM);
+  mesh.minHeightM = stored->meta.minHeightM, mesh.maxHeightM = stored->meta.maxHeightM;
   // A step is a power of two and a vertex 16 bits, so the float is exact.
   for (const ChunkVertex& v : decoded->vertices)
     mesh.positionsM.push_back(glm::vec3(v.x, v.y, v.z) * static_cast<float>(stepM));
+  mesh.grid = TriangleGrid(*decoded);
   mesh.indices = decoded->indices;
 
   meshBytes_ += mesh.bytes();
@@ -102,36 +108,56 @@ Result<const GroundQuery::Mesh*> GroundQuery::meshOf(const TileKey& key) {
   return &meshes_.emplace(key.code(), Kept{std::move(mesh), uses_.begin()}).first->second.mesh;
 }
 
-Result<GroundHit> GroundQuery::under(double latDeg, double lonDeg) {
+Result<std::pair<TileKey, const GroundQuery::Mesh*>> GroundQuery::leafAt(double latDeg, double lonDeg) {
+  // Only leaves are kept, so what is found on any level is the leaf.
+  for (const int level : {leafLevel_, leafLevel_ + 1, leafLevel_ - 1}) {
+    if (level < 0 || level > kMaxLevel) continue;
+    const TileKey key = TileKey::containing(latDeg, lonDeg, level);
+    const Mesh* kept = keptMeshOf(key);
+    if (kept == nullptr) continue;
+    leafLevel_ = level;
+    return std::pair(key, kept);
+  }
   TileKey key = TileKey::containing(latDeg, lonDeg, 0);
-  Result<ChunkMeta> meta = metaOf(key);
-  while (meta && meta->childCount > 0) {
+  Result<const ChunkMeta*> meta = metaOf(key);
+  while (meta && (*meta)->childCount > 0) {
     key = TileKey::containing(latDeg, lonDeg, key.level() + 1);
     meta = metaOf(key);
   }
   if (!meta) return tl::unexpected(meta.error());
-  const Result<const Mesh*> found = meshOf(key);
-  if (!found) return tl::unexpected(found.error());
-  const Mesh& mesh = **found;
+  const Result<const Mesh*> mesh = meshOf(key);
+  if (!mesh) return tl::unexpected(mesh.error());
+  leafLevel_ = key.level();
+  return std::pair(key, *mesh);
+}
 
-  const Vec3d top = ecefFromGeodetic({latDeg, lonDeg, meta->maxHeightM + 1}) - mesh.originEcefM;
-  const Vec3d way = ecefFromGeodetic({latDeg, lonDeg, meta->minHeightM - 1}) - mesh.originEcefM - top;
-  // The triangle that the plumb line goes through, or comes nearest to: a chunk's edges are chords of its cell's.
+Result<GroundHit> GroundQuery::under(double latDeg, double lonDeg) {
+  const auto leaf = leafAt(latDeg, lonDeg);
+  if (!leaf) return tl::unexpected(leaf.error());
+  const auto& [key, found] = *leaf;
+  const Mesh& mesh = *found;
+
+  // The plumb line, a metre beyond the ground's heights.
+  const double topM = mesh.maxHeightM + 1, deepM = topM - (mesh.minHeightM - 1);
+  const Vec3d up = upAt(latDeg, lonDeg);
+  const Vec3d top = ecefFromGeodetic({latDeg, lonDeg, topM}) - mesh.originEcefM, way = -deepM * up;
+  // The triangle that it goes through, or comes nearest to: a chunk's edges are chords of its cell's.
   Crossing best{0, -1e30};
-  size_t bestAt = 0;
-  for (size_t i = 0; i + 2 < mesh.indices.size() && best.inside < 0; i += 3) {
+  Vec3d normal{};
+  const auto look = [&](size_t i) {
     const Vec3d a(mesh.positionsM[mesh.indices[i]]), b(mesh.positionsM[mesh.indices[i + 1]]),
         c(mesh.positionsM[mesh.indices[i + 2]]);
     const auto crossing = crossingOf(top, way, a, b, c);
-    if (crossing && crossing->inside > best.inside) best = *crossing, bestAt = i;
-  }
+    if (crossing && crossing->inside > best.inside) best = *crossing, normal = glm::cross(b - a, c - a);
+    return best.inside >= 0;
+  };
+  const TileParam at = paramFromLatLon(key, {latDeg, lonDeg});
+  const bool isInside = std::ranges::any_of(mesh.grid.near(at.s, at.t), look);
+  for (size_t i = 0; !isInside && i + 2 < mesh.indices.size(); i += 3)
+    if (look(i)) break;
   if (best.inside < -1)
     return fail(ErrorKind::badData, fmt::format("{} has no triangle under {} {}", key.name(), latDeg, lonDeg));
-  GroundHit hit =
-      hitAt(mesh.originEcefM + top + way * best.along, Vec3d(mesh.positionsM[mesh.indices[bestAt]]),
-            Vec3d(mesh.positionsM[mesh.indices[bestAt + 1]]), Vec3d(mesh.positionsM[mesh.indices[bestAt + 2]]));
-  hit.position.latDeg = latDeg, hit.position.lonDeg = lonDeg;
-  return hit;
+  return GroundHit{{latDeg, lonDeg, topM - deepM * best.along}, glm::normalize(normal)};
 }
 
 // Chunks in the order in which the line enters their boxes, parents before children, until the nearest hit comes before
@@ -143,9 +169,10 @@ Result<std::optional<GroundHit>> GroundQuery::between(const Vec3d& fromEcefM, co
   const auto look = [&](const TileKey& key) -> Result<void> {
     if (++looked > kMostChunks)
       return fail(ErrorKind::unsupported, fmt::format("a line of sight meets more than {} chunks", kMostChunks));
-    const Result<ChunkMeta> meta = metaOf(key);
+    const Result<const ChunkMeta*> meta = metaOf(key);
     if (!meta) return tl::unexpected(meta.error());
-    if (const auto enters = entryOf(meta->box, fromEcefM, way)) waiting.push({*enters, key});
+    if (const auto enters = entryOf((*meta)->box, fromEcefM, way))
+      waiting.push({*enters, key, (*meta)->childCount > 0});
     return {};
   };
   for (int octant = 0; octant < kOctants; ++octant)
@@ -154,19 +181,18 @@ Result<std::optional<GroundHit>> GroundQuery::between(const Vec3d& fromEcefM, co
   std::optional<GroundHit> nearest;
   double nearestAlong = 1;
   while (!waiting.empty() && waiting.top().enters <= nearestAlong) {
-    const TileKey key = waiting.top().key;
+    const auto [enters, key, hasChildren] = waiting.top();
     waiting.pop();
-    const Result<ChunkMeta> meta = metaOf(key);
-    if (!meta) return tl::unexpected(meta.error());
-    if (meta->childCount > 0) {
+    if (hasChildren) {
       for (const TileKey& child : key.children())
         if (const auto ok = look(child); !ok) return tl::unexpected(ok.error());
       continue;
     }
     const Result<const Mesh*> mesh = meshOf(key);
     if (!mesh) return tl::unexpected(mesh.error());
-    const auto& [originEcefM, positionsM, indices] = **mesh;
-    const Vec3d from = fromEcefM - originEcefM;
+    const std::vector<glm::vec3>& positionsM = (*mesh)->positionsM;
+    const std::vector<uint16_t>& indices = (*mesh)->indices;
+    const Vec3d from = fromEcefM - (*mesh)->originEcefM;
     constexpr double kOnTheEdge = -1e-9;  // a line along an edge meets one of its triangles
     for (size_t i = 0; i + 2 < indices.size(); i += 3) {
       const Vec3d a(positionsM[indices[i]]), b(positionsM[indices[i + 1]]), c(positionsM[indices[i + 2]]);

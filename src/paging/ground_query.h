@@ -7,6 +7,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "paging/triangle_grid.h"
 #include "terrain/database.h"
 
 namespace eye {
@@ -29,12 +30,16 @@ class GroundQuery {
   static constexpr int kMostChunks = 4000;  // looked at for one line of sight, by their boxes
 
  private:
-  // A chunk's triangles, relative to `originEcefM`.
+  // A leaf's triangles, relative to `originEcefM`.
   struct Mesh {
     Vec3d originEcefM{};
+    double minHeightM = 0, maxHeightM = 0;
     std::vector<glm::vec3> positionsM;
     std::vector<uint16_t> indices;
-    size_t bytes() const { return positionsM.size() * sizeof(glm::vec3) + indices.size() * sizeof(uint16_t); }
+    TriangleGrid grid;
+    size_t bytes() const {
+      return positionsM.size() * sizeof(glm::vec3) + indices.size() * sizeof(uint16_t) + grid.bytes();
+    }
   };
   struct Kept {
     Mesh mesh;
@@ -42,14 +47,19 @@ class GroundQuery {
   };
 
   explicit GroundQuery(DatabaseReader reader) : reader_(std::move(reader)) {}
-  Result<ChunkMeta> metaOf(const TileKey& key);
+  // Valid until the next call.
+  Result<const ChunkMeta*> metaOf(const TileKey& key);
   Result<const Mesh*> meshOf(const TileKey& key);
+  const Mesh* keptMeshOf(const TileKey& key);
+  // The leaf that holds a place.
+  Result<std::pair<TileKey, const Mesh*>> leafAt(double latDeg, double lonDeg);
 
   DatabaseReader reader_;
   std::unordered_map<uint64_t, ChunkMeta> metas_;
   std::unordered_map<uint64_t, Kept> meshes_;
   std::list<uint64_t> uses_;  // of meshes, the newest first
   size_t meshBytes_ = 0;
+  int leafLevel_ = 0;  // of the last height: the next is asked nearby, mostly
 };
 
 }  // namespace eye
