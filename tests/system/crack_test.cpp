@@ -55,8 +55,10 @@ struct Holes {
 Holes findHoles(const RasterImage& image, const EyePose& pose) {
   const std::vector<bool> sea = seaMask(pose);
   const auto seaAround = [&](int row, int column) {
-    for (int r = std::max(0, row - kRim); r <= std::min(kHeight - 1, row + kRim); ++r)
-      for (int c = std::max(0, column - kRim); c <= std::min(kWidth - 1, column + kRim); ++c)
+    // The horizon may lie just beyond the picture's edge.
+    if (row < kRim || row >= kHeight - kRim || column < kRim || column >= kWidth - kRim) return false;
+    for (int r = row - kRim; r <= row + kRim; ++r)
+      for (int c = column - kRim; c <= column + kRim; ++c)
         if (!sea[static_cast<size_t>(r * kWidth + c)]) return false;
     return true;
   };
