@@ -34,8 +34,8 @@ struct RendererOptions {
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
   int textureSize = 128;                          // of the terrain database
   DepthPyramidBy depthPyramid = DepthPyramidBy::device;
-  bool debugViews = false;        // FrameInput's tint and showDepthMap work
-  std::optional<SceneBend> bend;  // terrain is bent by this about the eye; not the debug views'
+  bool debugViews = false;          // FrameInput's tint and showDepthMap work
+  std::optional<SceneBend> bend{};  // terrain is bent by this about the eye; not the debug views'
 };
 
 // Colours over the terrain, for looking at culling: by level of detail, or by what became of each cluster in the last
