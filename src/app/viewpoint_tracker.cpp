@@ -112,8 +112,8 @@ bool ViewpointTracker::isSilent() const {
 
 DisplayedEye ViewpointTracker::eye() const {
   DisplayedEye eye{pose_};
-  if (!live_ || options_.hostDelay == HostDelayMode::off) return eye;
   eye.silent = isSilent();
+  if (!live_ || options_.hostDelay == HostDelayMode::off) return eye;
   if (observedS_ - changedS_ > kStandsStillS || sinceRestart_ < kFewestObservations) return eye;
   const double delayS = options_.hostDelay == HostDelayMode::fixed
                             ? options_.hostDelayMs * 1e-3

@@ -1,4 +1,4 @@
-// How a CIGI packet's fields are reached. A layout (cigi_layouts.h) lists them once, and runs against a FieldReader,
+// How a CIGI packet's fields are reached. A layout (cigi_layout_*.h) lists them once, and runs against a FieldReader,
 // which fills the struct, or a FieldWriter, which fills the packet.
 #pragma once
 

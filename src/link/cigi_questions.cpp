@@ -6,8 +6,8 @@
 namespace eye::cigi {
 namespace {
 
-constexpr size_t kMaxRepeating = 256;  // requests with an update period
-constexpr size_t kMaxQuestions = 512;  // between two messages that take them
+constexpr size_t kMaxRepeating = 256;                          // requests with an update period
+constexpr size_t kMaxQuestions = kMaxPackets + kMaxRepeating;  // all that one message can ask
 
 uint16_t idOf(const GroundRequest& request) {
   return std::visit([](const auto& r) { return r.id; }, request);

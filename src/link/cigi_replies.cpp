@@ -11,7 +11,11 @@ constexpr int8_t kNotAvailable = -128;
 
 void Replies::heard(const Peer& host, const Format& format, const IgControl& control, int64_t nowNs) {
   const std::lock_guard lock(mutex_);
-  if (host_ != host) answers_.clear();  // of another's questions
+  if (host_ != host) {  // what was another's
+    answers_.clear();
+    wantedDatabase_ = 0;
+    loaded_ = false;
+  }
   host_ = host;
   heardNs_ = nowNs;
   format_ = format;

@@ -13,7 +13,7 @@
 namespace eye::cigi {
 
 // Answers that wait for a frame: a message holds nearly all of the longest kind, and all of the others.
-inline constexpr size_t kMaxAnswers = 1024;
+inline constexpr size_t kMaxAnswers = 2 * kMaxPackets;
 
 class Replies {
  public:

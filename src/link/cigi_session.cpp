@@ -13,6 +13,8 @@ namespace {
 constexpr int64_t kCarryOnNs = 200'000'000;
 // More frames than this missing at once is a host that has begun anew.
 constexpr uint32_t kMaxGap = 10'000;
+// So many frames behind one another that are all older than the newest are no overtaken ones: the host counts anew.
+constexpr int kBegunAnew = 10;
 
 }  // namespace
 
@@ -39,11 +41,19 @@ void Session::reset() {
   repeating_.clear();
   questions_.clear();
   started_ = false;
+  lateRun_ = 0;
   control_ = {};
   seen_.fill(std::nullopt);
 }
 
 void Session::header(const IgControl& control, const std::string& name) {
+  if (started_ && isLate(control.hostFrame, control_.hostFrame)) {
+    lateRun_ = lateRun_ > 0 && control.hostFrame == newestLate_ + 1 ? lateRun_ + 1 : 1;
+    newestLate_ = control.hostFrame;
+    if (lateRun_ >= kBegunAnew) reset();
+  } else {
+    lateRun_ = 0;
+  }
   const uint32_t gap = control.hostFrame - control_.hostFrame;
   if (started_ && isLate(control.hostFrame, control_.hostFrame)) {
     // Overtaken, not lost; unless it has come before.

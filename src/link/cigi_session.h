@@ -71,6 +71,8 @@ class Session {
   IgControl control_;
   bool started_ = false;
   uint64_t lostFrames_ = 0;
+  uint32_t newestLate_ = 0;                        // of the frames that came behind a newer one
+  int lateRun_ = 0;                                // how many of them behind one another, each the next of the last
   std::array<std::optional<uint32_t>, 128> seen_;  // host frames by their last bits: more than can be late
   int64_t arrivedNs_ = 0;
 

@@ -8,7 +8,7 @@ namespace eye::cigi {
 namespace {
 
 // A second's worth of a host that asks seventeen questions a frame.
-constexpr size_t kMaxWaiting = 1024;
+constexpr size_t kMaxWaiting = 2 * cigi::kMaxPackets;
 
 }  // namespace
 

@@ -123,6 +123,11 @@ TEST_CASE("CIGI replies: the handshake of databases, the end of a silent host, a
   replies.heard(host, {}, control, 1);
   CHECK(number({}, 1) == -128);
   CHECK(number({}, 5'000'000'002) == 99);  // silent
+  // Another host has asked for nothing yet.
+  control.databaseNumber = 0;
+  replies.heard(Peer{5, 6}, {}, control, 5'000'000'003);
+  CHECK(number({}, 5'000'000'003) == 5);
+  replies.heard(host, {}, control, 1);
   Replies fixed(Peer{3, 4}, std::nullopt);
   CHECK(fixed.frame({}, 0)->receiver == Peer{3, 4});  // before any host
 
@@ -139,7 +144,7 @@ TEST_CASE("CIGI replies: the handshake of databases, the end of a silent host, a
     ++messages;
   }
   CHECK(sent == kMaxAnswers);
-  CHECK(messages == 1);
+  CHECK(messages <= 4);  // more than a thousand in each
   replies.answer(HeightExtendedResponse{});
   replies.heard({9, 9}, {}, control, 1);  // another host: not its questions
   CHECK(parse(replies.frame({}, 1)->message)->packets.size() == 1);
