@@ -108,7 +108,7 @@ TEST_CASE("Planar depth: the paper's equations are each other's inverse, up to t
   CHECK(step(0.1, 50000) == Approx(1490).epsilon(0.06));
 }
 
-TEST_CASE("--at: a position, an altitude, a height above the ground") {
+TEST_CASE("option --at: a position, an altitude, a height above the ground") {
   CHECK(parseEyeWish("49.2,20.1")->latDeg == 49.2);
   CHECK_FALSE(parseEyeWish("49.2,20.1")->altM);
   CHECK(parseEyeWish("49.2,20.1,2500")->altM == 2500.0);
