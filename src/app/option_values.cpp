@@ -161,7 +161,8 @@ void setBackground(Options& options, const std::string& text) {
 }
 
 void setDate(Options& options, const std::string& text) {
-  const auto n = text.size() == 10 ? splitNumbers(text, '-', 3) : std::nullopt;
+  auto n = text.size() == 10 ? splitNumbers(text, '-', 3) : std::nullopt;
+  if (n && std::ranges::any_of(*n, [](double part) { return std::abs(part) > 9999; })) n.reset();  // such as 1e9
   const auto whole = [&](size_t i) { return static_cast<int>((*n)[i]); };
   if (n) options.date = CalendarDate{whole(0), whole(1), whole(2)};
   const bool valid =

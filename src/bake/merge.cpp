@@ -138,15 +138,18 @@ Result<void> mergeShards(const std::string& out, const std::vector<std::string>&
                          const std::function<void(uint64_t, uint64_t)>& progress) {
   std::error_code error;
   if (fs::exists(out, error)) return fail(ErrorKind::usage, out + ": exists already; delete it first");
+  const std::string part = out + ".part";
   std::vector<DatabaseReader> shards;
   for (const std::string& input : inputs) {
+    if (fs::equivalent(input, part, error))
+      return fail(ErrorKind::usage,
+                  fmt::format("{}: merging into {} would write over it; rename it first", input, out));
     Result<DatabaseReader> reader = DatabaseReader::open(input);
     if (!reader) return tl::unexpected(reader.error());
     shards.push_back(std::move(*reader));
   }
   const Result<DatabaseInfo> info = commonInfo(shards);
   if (!info) return tl::unexpected(info.error());
-  const std::string part = out + ".part";
   removeDatabase(part);
   Result<void> merged = mergeInto(part, shards, *info, progress);
   if (merged) {

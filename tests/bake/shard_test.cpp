@@ -160,6 +160,10 @@ TEST_CASE("Merging says what is missing, twice, foreign or in the way") {
   CHECK(complaint(merge(folder, "m", {"nowhere"})).find("nowhere") != std::string::npos);
   CHECK(complaint(merge(folder, "whole.eyt", {"part1", "part2", "part3"})).find("exists") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder.file("m")));
+  // What merging writes to before it is whole is not what it reads.
+  std::filesystem::rename(folder.file("part3"), folder.file("m.part"));
+  CHECK(complaint(merge(folder, "m", {"part1", "part2", "m.part"})).find("rename it") != std::string::npos);
+  CHECK(std::filesystem::exists(folder.file("m.part")));
   // A shard is resumed as that shard alone.
   CHECK_FALSE(run(globeJob(folder, "part1", Shard{2, kShards}, 1)));
 }
