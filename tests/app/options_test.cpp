@@ -58,7 +58,8 @@ TEST_CASE("the sun's date and hours: local or universal, on the command line or 
   CHECK(parsed.options.date->day == 21);
   CHECK(*parsed.options.utcH == 14.5);
   CHECK(parse({"--date", "2024-02-29"}).options.date->day == 29);
-  for (const char* date : {"2023-02-29", "2026-13-01", "26-01-01", "2026-1-1", "2026-01-01x", "1800-01-01", "today", "1e99-01-01"})
+  for (const char* date :
+       {"2023-02-29", "2026-13-01", "26-01-01", "2026-1-1", "2026-01-01x", "1800-01-01", "today", "1e99-01-01"})
     CHECK(parse({"--date", date}).exitStatus == 2);
   CHECK(parse({"--utc", "12", "--time-of-day", "12"}).exitStatus == 2);
 
