@@ -12,6 +12,7 @@
 #include "bake/demo_terrain.h"
 #include "bake/merge.h"
 #include "bake/shard.h"
+#include "base/command_line.h"
 #include "base/version.h"
 #include "inspect.h"
 #include "progress.h"
@@ -171,9 +172,7 @@ Result<void> runMerge(const Arguments& arguments) {
 }
 
 int report(const Result<void>& result) {
-  if (result) return 0;
-  fmt::print(stderr, "eyepoint-bake: {}\n", result.error().message);
-  return exitStatus(result.error());
+  return result ? 0 : complain("eyepoint-bake", result.error());
 }
 
 }  // namespace

@@ -2,11 +2,10 @@
 #include <cstdio>
 
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include "app/process_setup.h"
+#include "base/command_line.h"
 #include "base/nearest_word.h"
 #include "base/progress_line.h"
 #include "base/version.h"
@@ -23,11 +22,6 @@ struct Arguments {
   std::string out, logLevel = "warn";
   SuiteOptions options;
 };
-
-int complain(const Error& error) {
-  fmt::print(stderr, "eyepoint-bench: {}\n", error.message);
-  return exitStatus(error);
-}
 
 std::string suiteNames() {
   std::string names;
@@ -124,17 +118,8 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the image generator over a terrain database, next to published figures.", "eyepoint-bench");
   Arguments args;
   declareOptions(app, args);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    return app.exit(asked);
-  } catch (const CLI::ParseError& problem) {
-    return complain({ErrorKind::usage, fmt::format("{} (see --help)", problem.what())});
-  }
-  const auto log = spdlog::stderr_color_mt("eyepoint-bench");
-  log->set_pattern("[%H:%M:%S.%e] %^%l%$ %v");
-  spdlog::set_default_logger(log);
-  spdlog::set_level(spdlog::level::from_str(args.logLevel));
-  if (const Result<void> done = measure(args); !done) return complain(done.error());
+  if (const std::optional<int> status = parseArguments(app, argc, argv)) return *status;
+  logToStderr("eyepoint-bench", args.logLevel);
+  if (const Result<void> done = measure(args); !done) return complain("eyepoint-bench", done.error());
   return 0;
 }

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "base/command_line.h"
 #include "base/version.h"
 #include "link/cigi_host.h"
 #include "link/scenario.h"
@@ -30,11 +31,6 @@ static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler")
 
 void onSignal(int) {
   stopAsked = true;
-}
-
-int complain(const Error& error) {
-  fmt::print(stderr, "eyepoint-host: {}\n", error.message);
-  return exitStatus(error);
 }
 
 std::string scenarioNames() {
@@ -205,13 +201,13 @@ SendReport send(const Arguments& args, Flight flight, const UdpSocket& socket, c
 }
 
 int fly(Arguments args) {
-  if (const auto ok = check(args); !ok) return complain(ok.error());
+  if (const auto ok = check(args); !ok) return complain("eyepoint-host", ok.error());
   const auto endpoint = parseEndpoint(args.to, kLoopbackAddress, "--to");
-  if (!endpoint) return complain(endpoint.error());
+  if (!endpoint) return complain("eyepoint-host", endpoint.error());
   auto flight = flightOf(args);
-  if (!flight) return complain(flight.error());
+  if (!flight) return complain("eyepoint-host", flight.error());
   const auto socket = UdpSocket::connectTo(*endpoint, args.interface);
-  if (!socket) return complain(socket.error());
+  if (!socket) return complain("eyepoint-host", socket.error());
   std::optional<cigi::ReplyListener> replies;
   if (speaksCigi(args)) replies.emplace(*socket);
 
@@ -228,7 +224,8 @@ int fly(Arguments args) {
         heard.starts, heard.overframings, heard.pagings, heard.heights, heard.sights, heard.notUnderstood);
   }
   if (report.failed == 0) return 0;
-  return complain({ErrorKind::io, fmt::format("{} datagrams could not be sent to {}; check the network and the address",
+  return complain("eyepoint-host",
+                  {ErrorKind::io, fmt::format("{} datagrams could not be sent to {}; check the network and the address",
                                               report.failed, args.to)});
 }
 
@@ -238,13 +235,7 @@ int main(int argc, char** argv) {
   CLI::App app("Flies an image generator over UDP: recordings, built-in scenarios or a fixed pose.", "eyepoint-host");
   Arguments args;
   declareOptions(app, args);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    return app.exit(asked);
-  } catch (const CLI::ParseError& problem) {
-    return complain({ErrorKind::usage, fmt::format("{} (see --help)", problem.what())});
-  }
+  if (const std::optional<int> status = parseArguments(app, argc, argv)) return *status;
   spdlog::set_level(spdlog::level::from_str(args.logLevel));
   spdlog::set_pattern("%v");
   std::signal(SIGINT, onSignal);

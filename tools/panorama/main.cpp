@@ -2,12 +2,11 @@
 #include <cstdio>
 
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include "app/options.h"
 #include "app/process_setup.h"
+#include "base/command_line.h"
 #include "base/version.h"
 #include "link/pose_limits.h"
 #include "pano/run.h"
@@ -22,11 +21,6 @@ struct Arguments {
   int widthPx = 8192;
   double verticalFovDeg = 40;
 };
-
-int complain(const Error& error) {
-  fmt::print(stderr, "eyepoint-panorama: {}\n", error.message);
-  return exitStatus(error);
-}
 
 void declareOptions(CLI::App& app, Arguments& args) {
   PanoramaOptions& options = args.job.options;
@@ -105,18 +99,9 @@ int main(int argc, char** argv) {
   CLI::App app("Draws the panorama from a place: names, and the distance of every pixel.", "eyepoint-panorama");
   Arguments args;
   declareOptions(app, args);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    return app.exit(asked);
-  } catch (const CLI::ParseError& problem) {
-    return complain({ErrorKind::usage, fmt::format("{} (see --help)", problem.what())});
-  }
-  const auto log = spdlog::stderr_color_mt("eyepoint-panorama");
-  log->set_pattern("[%H:%M:%S.%e] %^%l%$ %v");
-  spdlog::set_default_logger(log);
-  spdlog::set_level(spdlog::level::from_str(args.logLevel));
-  if (const Result<void> fine = check(args); !fine) return complain(fine.error());
-  if (const Result<void> done = runPanorama(args.job); !done) return complain(done.error());
+  if (const std::optional<int> status = parseArguments(app, argc, argv)) return *status;
+  logToStderr("eyepoint-panorama", args.logLevel);
+  if (const Result<void> fine = check(args); !fine) return complain("eyepoint-panorama", fine.error());
+  if (const Result<void> done = runPanorama(args.job); !done) return complain("eyepoint-panorama", done.error());
   return 0;
 }
