@@ -1,5 +1,5 @@
 // Sky and haze: closed forms over an atmosphere that thins out exponentially. GLSL only; needs `frame`.
-// Cheap on purpose: on a CPU device a pixel of sky costs four exponentials, one of terrain a single one.
+// Cheap on purpose: all of it runs by vertex, or by pixel where vertices are too far apart.
 
 // Column of air along a ray that leaves upwards at sine `rise` from where the air is as dense as at the ground, in units
 // of the vertical column. Chapman's function, near enough: 35 along the level, 1 / rise higher up.
@@ -32,20 +32,22 @@ vec3 hazeColour(float towardsSun, float lit) {
   return (frame.horizon.rgb + frame.horizonGlow.rgb * glowShape(towardsSun)) * lit;
 }
 
-vec3 skyColour(vec3 ray_eye) {
-  float rise = dot(ray_eye, frame.up_eye.xyz);
-  float towardsSun = dot(ray_eye, frame.sun_eye.xyz);
+// `rise` and `towardsSun`: cosines between the ray and the eye's vertical, and the sun. Without the sun's disc.
+vec3 skyColour(float rise, float towardsSun) {
   float sunHeight = dot(frame.up_eye.xyz, frame.sun_eye.xyz);
   // A falling ray's air is where it passes nearest to the Earth: seen from space, that may have night or day of its own.
   if (rise < 0.0) sunHeight = (sunHeight - rise * towardsSun) * inversesqrt(max(1.0 - rise * rise, 1e-6));
   float lit = skyLit(sunHeight);
   vec3 scattered = 1.0 - exp(-frame.airDepth.rgb * skyColumn(rise));
-  // The disc is half a degree wide; its rim is softened over a tenth of that. The distance of unit vectors keeps the
-  // digits that 1 - cos would lose in floats.
+  return lit * (frame.deepSky.rgb * scattered + frame.glow.rgb * (glowShape(towardsSun) * scattered.g));
+}
+
+// What the sun's disc adds to that. It is half a degree wide; its rim is softened over a tenth of that. The distance of
+// unit vectors keeps the digits that 1 - cos would lose in floats.
+float sunDisc(vec3 ray_eye, float rise) {
   vec3 offset = ray_eye - frame.sun_eye.xyz;
   float disc = 1.0 - smoothstep(1.6e-5, 2.2e-5, dot(offset, offset));
-  return lit * (frame.deepSky.rgb * scattered + frame.glow.rgb * (glowShape(towardsSun) * scattered.g)) +
-         frame.glow.w * disc * (1.0 - 0.7 * scattered.r);
+  return frame.glow.w * disc * (1.0 - 0.7 * (1.0 - exp(-frame.airDepth.r * skyColumn(rise))));
 }
 
 // Optical depth of the haze per metre of the straight way from the eye to a point of the ground, mean over the way.

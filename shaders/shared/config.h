@@ -75,6 +75,14 @@
 // Light of the sky by night, as displayed, over that of the day.
 #define EYE_NIGHT_SKY 0.07
 #define EYE_EARTH_RADIUS_M 6371000.0
+#define EYE_PI 3.14159265358979
+
+// The sky's dome: meridians, rings from the horizon to the zenith and as many down to the nadir, and how much closer
+// the rings lie along the horizon, where the air's column changes by half within a degree: 0.3 degrees apart there, 7
+// at the zenith. No colour is off by more than a step or two of 255.
+#define EYE_DOME_MERIDIANS 96
+#define EYE_DOME_RINGS 40
+#define EYE_DOME_CROWDING 3.2
 #define EYE_LOG2_E 1.44269504
 
 #endif

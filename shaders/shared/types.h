@@ -30,23 +30,24 @@ static_assert(sizeof(DrawData) == 128 && alignof(DrawData) == 4);
 
 // Colours are as displayed, not linear. Scalar layout; every row is 16 bytes.
 struct FrameData {
-  mat4 clipFromEcef;  // of positions relative to the eye: rotation and projection, no translation
-  vec4 ray_eye;       // the view ray through a point of the picture, z = 1: xy + pixel * zw
-  vec4 up_eye;        // w: the eye's distance from the Earth's centre, in Earth radii
-  vec4 up_ecef;       // w: the eye's height above the ellipsoid, metres
-  vec4 sun_eye;       // towards the sun; w: density of the air at the eye, over the ground's
-  vec4 sun_ecef;      // w: density of the air where a ray from above enters it (at most EYE_AIR_TOP_M up)
-  vec4 sunLight;      // colour of direct light on terrain; w: the haze's extinction per metre at sea level
-  vec4 skyLight;      // colour of the light of the whole sky
-  vec4 airDepth;      // optical depths, red to blue, of a vertical column of air and haze, from sea level
-  vec4 deepSky;       // colour of an endlessly deep sky by day, away from the sun
-  vec4 glow;          // colour added to it towards the sun; w: brightness of the sun's disc
-  vec4 horizon;       // deepSky as the horizon shows it
-  vec4 horizonGlow;   // glow as the horizon shows it
+  mat4 clipFromEcef;    // of positions relative to the eye: rotation and projection, no translation
+  vec4 ray_eye;         // the view ray through a point of the picture, z = 1: xy + pixel * zw
+  vec4 up_eye;          // w: the eye's distance from the Earth's centre, in Earth radii
+  vec4 up_ecef;         // w: the eye's height above the ellipsoid, metres
+  vec4 sun_eye;         // towards the sun; w: density of the air at the eye, over the ground's
+  vec4 sun_ecef;        // w: density of the air where a ray from above enters it (at most EYE_AIR_TOP_M up)
+  vec4 sunLight;        // colour of direct light on terrain; w: the haze's extinction per metre at sea level
+  vec4 skyLight;        // colour of the light of the whole sky
+  vec4 airDepth;        // optical depths, red to blue, of a vertical column of air and haze, from sea level
+  vec4 deepSky;         // colour of an endlessly deep sky by day, away from the sun
+  vec4 glow;            // colour added to it towards the sun; w: brightness of the sun's disc
+  vec4 horizon;         // deepSky as the horizon shows it
+  vec4 horizonGlow;     // glow as the horizon shows it
+  vec4 domeAhead_ecef;  // level direction of the sky dome's first meridian
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameData) == 64 + 12 * 16 && offsetof(FrameData, ray_eye) == 64);
+static_assert(sizeof(FrameData) == 64 + 13 * 16 && offsetof(FrameData, ray_eye) == 64);
 }  // namespace eye::shader
 #endif
 

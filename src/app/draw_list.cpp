@@ -23,6 +23,7 @@ void makeDrawList(const TerrainCache& cache, const Selection& selection, std::ve
     draw.originLattice = node.meta.originLattice;
     draw.stepM = node.meta.stepM();
     draw.box = node.meta.box;
+    draw.longestEdgeM = node.longestEdgeM;
     draw.upEcef = glm::cross(east, north);
     draw.outwardEcef = {-north, east, north, -east};
     draw.level = node.meta.key.level();

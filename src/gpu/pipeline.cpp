@@ -25,7 +25,8 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
 
   vk::PipelineVertexInputStateCreateInfo vertexInput;
   vertexInput.setVertexBindingDescriptions(spec.bindings).setVertexAttributeDescriptions(spec.attributes);
-  const vk::PipelineInputAssemblyStateCreateInfo assembly({}, vk::PrimitiveTopology::eTriangleList);
+  const vk::PipelineInputAssemblyStateCreateInfo assembly(
+      {}, spec.isStrip ? vk::PrimitiveTopology::eTriangleStrip : vk::PrimitiveTopology::eTriangleList);
   const vk::PipelineViewportStateCreateInfo viewport({}, 1, nullptr, 1, nullptr);
   vk::PipelineRasterizationStateCreateInfo raster;
   raster.setCullMode(spec.cull).setFrontFace(vk::FrontFace::eCounterClockwise).setLineWidth(1.0f);

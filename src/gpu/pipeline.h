@@ -24,6 +24,7 @@ struct PipelineSpec {
   vk::Format depthFormat = vk::Format::eUndefined;  // of the pass, used or not
   DepthUse depth = DepthUse::none;
   std::vector<uint32_t> vertexConstants{};  // the vertex shader's specialization constants 0, 1, 2 ..., as bits
+  bool isStrip = false;                     // triangle strips instead of single triangles
   bool adds = false;                        // colours are added to what is there
   vk::CullModeFlags cull = vk::CullModeFlagBits::eNone;  // counterclockwise as seen on the screen is the front
 };

@@ -6,6 +6,7 @@
 
 #include "telemetry/trace.h"
 #include "terrain/chunk_codec.h"
+#include "terrain/extent.h"
 
 namespace eye {
 namespace {
@@ -42,6 +43,7 @@ Result<LoadedChunk> loadChunk(const DatabaseReader& reader, const TileKey& key, 
     return tl::unexpected(damaged(reader, key, "too many vertices for skirts"));
   loaded.mesh = std::move(*mesh);
   loaded.surfaceIndexCount = static_cast<uint32_t>(loaded.mesh.indices.size());
+  loaded.longestEdgeM = longestEdgeM(loaded.mesh, loaded.meta.stepM());
   loaded.skirts = appendSkirts(loaded.mesh);
 
   if (loaded.meta.hasImagery) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "paging/lod_select.h"
+#include "terrain/extent.h"
 
 namespace eye {
 namespace {

@@ -7,6 +7,7 @@
 #include "paging/across.h"
 #include "paging/skirts.h"
 #include "telemetry/trace.h"
+#include "terrain/extent.h"
 
 namespace eye {
 namespace {
@@ -203,18 +204,6 @@ void listWanted(const TerrainCache& cache, double coarsening, Selection& out) {
 }
 
 }  // namespace
-
-double distanceToBox(const Vec3d& pointEcefM, const OrientedBox& box) {
-  const Vec3d fromCentreM = pointEcefM - box.centreEcefM;
-  Vec3d outsideM = fromCentreM;
-  for (const Vec3d& axis : box.halfAxesEcefM) {
-    const double lengthSquared = glm::dot(axis, axis);
-    if (lengthSquared <= 0) continue;
-    const double along = std::clamp(glm::dot(fromCentreM, axis) / lengthSquared, -1.0, 1.0);
-    outsideM -= along * axis;
-  }
-  return glm::length(outsideM);
-}
 
 void selectChunks(TerrainCache& cache, const View& view, const LodOptions& options, Selection& out) {
   const TraceScope trace("select chunks");

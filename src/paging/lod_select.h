@@ -63,6 +63,4 @@ struct Selection {
 // Call after cache.beginFrame(). Nodes that are visited are marked used in the cache, for eviction.
 void selectChunks(TerrainCache& cache, const View& view, const LodOptions& options, Selection& out);
 
-double distanceToBox(const Vec3d& pointEcefM, const OrientedBox& box);
-
 }  // namespace eye

@@ -7,6 +7,7 @@
 #include "geo/frames.h"
 #include "paging/lod_select.h"
 #include "telemetry/trace.h"
+#include "terrain/extent.h"
 
 namespace eye {
 namespace {

@@ -12,7 +12,7 @@ constexpr double kClearlyLaterS = 1;
 }  // namespace
 
 ResidentChunk residentFrom(const LoadedChunk& chunk, const GpuChunk& gpu) {
-  return {chunk.meta, gpu, chunk.skirts, chunk.surfaceIndexCount};
+  return {chunk.meta, gpu, chunk.skirts, chunk.surfaceIndexCount, chunk.longestEdgeM};
 }
 
 Residency::Residency(GpuStore& gpu, std::function<void(const TileKey&)> onEvicted)

@@ -135,6 +135,7 @@ void TerrainCache::place(uint32_t index, uint32_t parent, const ResidentChunk& c
   node.gpu = chunk.gpu;
   node.skirts = chunk.skirts;
   node.surfaceIndexCount = chunk.surfaceIndexCount;
+  node.longestEdgeM = chunk.longestEdgeM;
   node.parent = parent;
   node.textureNode = index;
   node.usedFrame = frame_;  // new is not old: it is not the first to be evicted

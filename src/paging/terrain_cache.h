@@ -22,6 +22,7 @@ struct LoadedChunk {
   ChunkMesh mesh;  // surface first, skirts behind
   uint32_t surfaceIndexCount = 0;
   std::array<SkirtRange, 4> skirts{};  // by Side
+  float longestEdgeM = 0;              // of the surface's triangles
   std::vector<uint8_t> texels;         // RGBA8 mip chain; empty where the chunk shows an ancestor's imagery
   size_t bytes() const;
 };
@@ -58,6 +59,7 @@ struct CacheNode {
   GpuChunk gpu;
   std::array<SkirtRange, 4> skirts{};
   uint32_t surfaceIndexCount = 0;
+  float longestEdgeM = 0;
   uint32_t parent = kNoNode;
   uint32_t firstChild = kNoNode;   // children lie behind one another, in the order of TileKey::children
   uint32_t textureNode = kNoNode;  // itself or the nearest ancestor with imagery
@@ -92,6 +94,7 @@ struct ResidentChunk {
   GpuChunk gpu;
   std::array<SkirtRange, 4> skirts{};
   uint32_t surfaceIndexCount = 0;
+  float longestEdgeM = 0;
 };
 
 class TerrainCache {

@@ -88,13 +88,14 @@ void CullLists::writePixelSpans(glm::ivec2 picturePx, glm::ivec2 mapPx) {
   spansPicturePx_ = picturePx;
 }
 
-void CullLists::write(std::span<const ChunkDraw> draws, const View& view, const glm::mat4& clipFromEcef,
-                      glm::ivec2 mapPx, bool frozen) {
+void CullLists::write(std::span<const ChunkDraw> draws, size_t byVertex, const View& view,
+                      const glm::mat4& clipFromEcef, glm::ivec2 mapPx, bool frozen) {
   const auto chunks = chunks_.as<shader::CullChunk>();
   const auto candidates = candidates_.as<shader::CullCandidate>();
   uint32_t count = 0;
   for (uint32_t i = 0; i < draws.size(); ++i) {
     const ChunkDraw& draw = draws[i];
+    if (i == byVertex) candidatesByVertex_ = count;
     chunks[i] = {.centre_ecef = glm::vec3(draw.box.centreEcefM - view.eyeEcefM),
                  .vertexOffset = static_cast<int32_t>(draw.gpu.vertexOffset),
                  .axisX_ecef = glm::vec3(draw.box.halfAxesEcefM[0]),
@@ -106,6 +107,7 @@ void CullLists::write(std::span<const ChunkDraw> draws, const View& view, const 
     for (uint32_t k = 0; k < draw.gpu.clusterCount; ++k) candidates[count++] = {draw.gpu.clusterOffset + k, i};
   }
   candidateCount_ = count;
+  if (byVertex == draws.size()) candidatesByVertex_ = count;
   chunkCount_ = static_cast<uint32_t>(draws.size());
 
   writePixelSpans({view.widthPx, view.heightPx}, mapPx);

@@ -17,9 +17,10 @@ class CullLists {
   static bool fits(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx);
   // Makes room; nothing may be in flight. True where a buffer was made anew: descriptors are to be written again.
   bool reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx);
-  // Fills what the shaders read: every cluster of the draws is a candidate, in the draws' order.
-  void write(std::span<const ChunkDraw> draws, const View& view, const glm::mat4& clipFromEcef, glm::ivec2 mapPx,
-             bool frozen);
+  // Fills what the shaders read: every cluster of the draws is a candidate, in the draws' order, which is partByHaze's:
+  // the first `byVertex` have haze by vertex.
+  void write(std::span<const ChunkDraw> draws, size_t byVertex, const View& view, const glm::mat4& clipFromEcef,
+             glm::ivec2 mapPx, bool frozen);
   // With pyramidOnHost, when the depth has been copied: what CullPass::recordDepthPyramid does elsewhere.
   void buildPyramid();
   // Of the frame that has just finished.
@@ -29,6 +30,7 @@ class CullLists {
   int longestSpanPx() const { return longestSpanPx_; }  // pixels that a texel of the map touches along an axis
   uint32_t chunkCount() const { return chunkCount_; }
   uint32_t candidateCount() const { return candidateCount_; }
+  uint32_t candidatesByVertex() const { return candidatesByVertex_; }  // the first of them
   const shader::CullParams& params() const { return params_.as<shader::CullParams>()[0]; }
 
   // By binding, EYE_BIND_CULL_PARAMS and so on; the clusters and their visibility are the pools'.
@@ -48,7 +50,7 @@ class CullLists {
   bool pyramidOnHost_;
   DepthPyramid hostPyramid_;
   size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0, spansCapacity_ = 0;
-  uint32_t chunkCount_ = 0, candidateCount_ = 0;
+  uint32_t chunkCount_ = 0, candidateCount_ = 0, candidatesByVertex_ = 0;
   GpuBuffer params_, chunks_, candidates_, early_, late_, fates_, depth_, pyramid_, pixelSpans_;
   glm::ivec2 spansMapPx_{0, 0}, spansPicturePx_{0, 0};  // what pixelSpans_ is for
   int longestSpanPx_ = 0;

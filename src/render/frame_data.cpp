@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/sky_dome.h"
+
 namespace eye {
 namespace {
 
@@ -84,6 +86,7 @@ shader::FrameData frameData(const FrameInput& input) {
   frame.sun_eye = vec4(vec3(view.eyeFromEcef * sunEcef), static_cast<float>(density(eye.altM)));
   frame.sun_ecef =
       vec4(vec3(sunEcef), static_cast<float>(std::exp(-std::min(eye.altM, EYE_AIR_TOP_M) / EYE_AIR_SCALE_M)));
+  frame.domeAhead_ecef = vec4(vec3(domeAhead(upEcef)), 0.0f);
   frame.sunLight.w = static_cast<float>(extinction);
   setLight(glm::dot(upEcef, sunEcef), density(eye.altM), kHazeShare * atGround * EYE_AIR_SCALE_M, frame);
   return frame;

@@ -9,6 +9,7 @@
 #include "render/cull_pass.h"
 #include "render/debug_views.h"
 #include "render/frame_data.h"
+#include "render/haze_width.h"
 #include "render/overlay.h"
 #include "render/raster_overlap.h"
 #include "render/scene_pass.h"
@@ -36,13 +37,14 @@ struct Renderer::Impl {
   Targets targets;
   vk::raii::CommandBuffer commands{nullptr};
   vk::raii::Fence finished{nullptr};
+  std::vector<ChunkDraw> draws;  // of the frame, in two parts by haze
   std::vector<PassTime> passTimes;
   std::vector<uint8_t> rgba;  // the picture read back, where the window's pixels are in another order
   bool drawn = false;         // the colour target holds a whole picture, in usageCopySource
 
   vk::Format colourFormat() const;
   void resizeTargets(int widthPx, int heightPx);
-  bool prepareCulling(const FrameInput& input);
+  bool prepareCulling(const FrameInput& input, size_t byVertex);
   void record(const FrameInput& input, const DrawCounts& counts, bool culls, std::optional<uint32_t> shown);
   void recordScene(const FrameInput& input, const DrawCounts& counts);
   void buildPyramidOnHost();
@@ -164,16 +166,20 @@ Result<bool> Renderer::awaitDisplay() {
   }
 }
 
-Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
+Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
   try {
     Impl& impl = *impl_;
+    FrameInput input = asked;
     impl.resizeTargets(input.view.widthPx, input.view.heightPx);
     impl.lists->reserve(*impl.gpu, input.draws.size());
     impl.scene->frame() = frameData(input);
-    impl.scene->placeStars(input);
-    const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
+    impl.scene->placeSky(input, impl.options.airByPixel);
+    const size_t parted = partByHaze(asked.draws, asked.view.eyeEcefM, impl.scene->frame(), impl.draws);
+    const size_t byVertex = impl.options.airByPixel ? 0 : parted;
+    input.draws = impl.draws;
+    const DrawCounts counts = impl.lists->write(input.draws, byVertex, input.view.eyeEcefM, impl.options.textureSize);
     if (impl.debug) impl.debug->prepare(*impl.gpu, input, *impl.pools, *impl.cullLists, impl.options.textureSize);
-    const bool culls = impl.prepareCulling(input);
+    const bool culls = impl.prepareCulling(input, byVertex);
     std::optional<uint32_t> shown;
     if (impl.swapchain != nullptr) shown = impl.swapchain->held();
     impl.record(input, counts, culls, shown);
@@ -186,12 +192,12 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     output.heightPx = impl.targets.heightPx;
     output.triangles = counts.surfaceTriangles + counts.skirtTriangles;
     output.vertices = counts.vertices;
-    output.draws = counts.surfaces + counts.skirts;
+    output.draws = counts.draws();
     if (culls) {
       output.clusters = impl.cullLists->counts();
       output.depthMapPx = impl.cullLists->params().mapPx;
       output.triangles = output.clusters.trianglesDrawn + counts.skirtTriangles;
-      output.draws = output.clusters.drawn + counts.skirts;
+      output.draws = output.clusters.drawn + counts.skirts();
     }
     if (input.readColour) output.rgba = impl.pictureRgba();
     if (input.readDepth) output.depth = impl.targets.depthBack.as<const float>();
@@ -216,7 +222,7 @@ void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
 }
 
 // False: nothing to test, or more than the device's buffers hold: the frame is drawn without the pass.
-bool Renderer::Impl::prepareCulling(const FrameInput& input) {
+bool Renderer::Impl::prepareCulling(const FrameInput& input, size_t byVertex) {
   if (!input.depthMapPx) return false;
   const glm::ivec2 picturePx(input.view.widthPx, input.view.heightPx);
   const glm::ivec2 mapPx = usableMap(*input.depthMapPx, picturePx);
@@ -225,17 +231,23 @@ bool Renderer::Impl::prepareCulling(const FrameInput& input) {
     cull->bind(*gpu, *pools, *cullLists);
     if (debug) debug->bind(*gpu, *cullLists);
   }
-  cullLists->write(input.draws, input.view, scene->frame().clipFromEcef, mapPx, input.freezeCulling);
+  cullLists->write(input.draws, byVertex, input.view, scene->frame().clipFromEcef, mapPx, input.freezeCulling);
   return cullLists->candidateCount() > 0;
 }
 
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
   scene->begin(commands, targets, ScenePass::Pass::first, input.background);
-  const uint32_t count = counts.surfaces + counts.skirts, batch = overlap->batch(count);
-  for (uint32_t done = 0; done < count; done += batch) {
-    if (done > 0) overlap->handOver(commands);
-    scene->drawTerrain(commands, *gpu, *pools, lists->draws(), lists->commands(), done, std::min(batch, count - done));
-  }
+  const uint32_t batch = overlap->batch(counts.draws());
+  const auto draw = [&](HazeBy haze, const DrawRange& range) {
+    for (uint32_t done = 0; done < range.count(); done += batch) {
+      const uint32_t first = range.first + done;
+      if (first > 0) overlap->handOver(commands);
+      scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), lists->commands(), first,
+                         std::min(batch, range.count() - done));
+    }
+  };
+  draw(HazeBy::vertex, counts.byVertex);
+  draw(HazeBy::pixel, counts.byPixel);
   if (!input.background) scene->drawSky(commands);
   scene->end(commands);
   timestamps->mark(commands, "scene");
@@ -254,13 +266,18 @@ void Renderer::Impl::buildPyramidOnHost() {
 // Two passes: what was visible in the last frame, then what else its depth does not hide. The skirts, few and mostly
 // hidden, are not tested.
 void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts& counts) {
-  const auto draw = [&](const GpuBuffer& indirect, uint32_t first, uint32_t count) {
-    scene->drawTerrain(commands, *gpu, *pools, lists->draws(), indirect, first, count);
+  const auto draw = [&](HazeBy haze, const GpuBuffer& indirect, uint32_t first, uint32_t count) {
+    scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), indirect, first, count);
+  };
+  const auto drawClusters = [&](const GpuBuffer& indirect) {
+    const uint32_t byVertex = cullLists->candidatesByVertex();
+    draw(HazeBy::vertex, indirect, 0, byVertex);
+    draw(HazeBy::pixel, indirect, byVertex, cullLists->candidateCount() - byVertex);
   };
   cull->recordEarly(commands, *cullLists);
   timestamps->mark(commands, "cull_early");
   scene->begin(commands, targets, ScenePass::Pass::first, input.background);
-  draw(cullLists->earlyBuffer(), 0, cullLists->candidateCount());
+  drawClusters(cullLists->earlyBuffer());
   scene->end(commands);
   timestamps->mark(commands, "early");
   if (!input.freezeCulling) {
@@ -275,8 +292,9 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
     timestamps->mark(commands, "cull_late");
   }
   scene->begin(commands, targets, ScenePass::Pass::goesOn, input.background);
-  if (!input.freezeCulling) draw(cullLists->lateBuffer(), 0, cullLists->candidateCount());
-  draw(lists->commands(), counts.surfaces, counts.skirts);
+  if (!input.freezeCulling) drawClusters(cullLists->lateBuffer());
+  draw(HazeBy::vertex, lists->commands(), counts.byVertex.firstSkirt(), counts.byVertex.skirts);
+  draw(HazeBy::pixel, lists->commands(), counts.byPixel.firstSkirt(), counts.byPixel.skirts);
   if (!input.background) scene->drawSky(commands);
   scene->end(commands);
   timestamps->mark(commands, "late");

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,6 +35,7 @@ struct RendererOptions {
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
   int textureSize = 128;                          // of the terrain database
   DepthPyramidBy depthPyramid = DepthPyramidBy::device;
+  bool airByPixel = false;          // all haze and sky: what both by vertex are judged by, see haze_width.h, sky_dome.h
   bool debugViews = false;          // FrameInput's tint and showDepthMap work
   std::optional<SceneBend> bend{};  // terrain is bent by this about the eye; not the debug views'
 };
@@ -49,8 +51,9 @@ struct ChunkDraw {
   std::array<float, 4> skirtDepthM{};  // by Side
   LatticePoint originLattice{};
   double stepM = 1;
-  OrientedBox box;                         // of the surface, what its clusters' bounds refer to
-  glm::vec3 upEcef{};                      // at the chunk's centre
+  OrientedBox box;                                              // of the surface, what its clusters' bounds refer to
+  float longestEdgeM = std::numeric_limits<float>::infinity();  // of its triangles, see haze_width.h
+  glm::vec3 upEcef{};                                           // at the chunk's centre
   std::array<glm::vec3, 4> outwardEcef{};  // by Side: horizontal, away from the chunk, for the skirts' flare
   int level = 0;                           // of detail, for its tint
   uint32_t textureLayer = 0;

@@ -5,14 +5,20 @@
 #include <bit>
 
 #include "gpu/pipeline.h"
+#include "spirv/sky_dome_frag.h"
+#include "spirv/sky_dome_vert.h"
 #include "spirv/sky_frag.h"
 #include "spirv/sky_vert.h"
 #include "spirv/star_frag.h"
 #include "spirv/star_vert.h"
+#include "spirv/sun_frag.h"
+#include "spirv/sun_vert.h"
 #include "spirv/terrain_frag.h"
 #include "spirv/terrain_tint_frag.h"
 #include "spirv/terrain_tint_vert.h"
 #include "spirv/terrain_vert.h"
+#include "spirv/terrain_wide_frag.h"
+#include "spirv/terrain_wide_vert.h"
 
 namespace eye {
 namespace {
@@ -63,6 +69,13 @@ PipelineSpec terrainSpec() {
   return spec;
 }
 
+PipelineSpec wideSpec() {
+  PipelineSpec spec = terrainSpec();
+  spec.vertexSpirv = k_terrain_wide_vert;
+  spec.fragmentSpirv = k_terrain_wide_frag;
+  return spec;
+}
+
 // As shaders/shared/bend.h numbers them.
 std::vector<uint32_t> bendConstants(const SceneBend& bend) {
   std::vector<uint32_t> constants{VK_TRUE};
@@ -88,6 +101,24 @@ PipelineSpec skySpec() {
   spec.vertexSpirv = k_sky_vert;
   spec.fragmentSpirv = k_sky_frag;
   spec.depth = DepthUse::whereNothing;
+  return spec;
+}
+
+PipelineSpec domeSpec() {
+  PipelineSpec spec;
+  spec.vertexSpirv = k_sky_dome_vert;
+  spec.fragmentSpirv = k_sky_dome_frag;
+  spec.depth = DepthUse::whereNothing;
+  spec.isStrip = true;
+  return spec;
+}
+
+PipelineSpec sunSpec() {
+  PipelineSpec spec;
+  spec.vertexSpirv = k_sun_vert;
+  spec.fragmentSpirv = k_sun_frag;
+  spec.depth = DepthUse::whereNothing;
+  spec.adds = true;
   return spec;
 }
 
@@ -124,11 +155,14 @@ ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
     spec.depthFormat = kDepthFormat;
     return createPipeline(gpu, cache, spec);
   };
-  PipelineSpec terrain = terrainSpec();
-  if (bend) terrain.vertexConstants = bendConstants(*bend);
+  PipelineSpec terrain = terrainSpec(), wide = wideSpec();
+  if (bend) terrain.vertexConstants = wide.vertexConstants = bendConstants(*bend);
   terrain_ = make(std::move(terrain));
+  wide_ = make(std::move(wide));
   if (withTints) tinted_ = make(tintedSpec());
   sky_ = make(skySpec());
+  domeSky_ = make(domeSpec());
+  sun_ = make(sunSpec());
   star_ = make(starSpec());
   const vk::DescriptorBufferInfo frame(*frame_.buffer, 0, VK_WHOLE_SIZE);
   gpu.device.updateDescriptorSets(vk::WriteDescriptorSet(*set_, EYE_BIND_FRAME, 0, Type::eUniformBuffer, {}, frame),
@@ -141,7 +175,10 @@ void ScenePass::bindTextures(const GpuDevice& gpu, const GpuImage& textures) {
       vk::WriteDescriptorSet(*set_, EYE_BIND_TEXTURES, 0, Type::eCombinedImageSampler, info), nullptr);
 }
 
-void ScenePass::placeStars(const FrameInput& input) {
+void ScenePass::placeSky(const FrameInput& input, bool byPixel) {
+  const glm::vec4 up = frame().up_ecef;
+  dome_.reset();
+  if (!byPixel && up.w < kDomeTopM) dome_ = domePart(input.view, Vec3d(up), Vec3d(frame().domeAhead_ecef));
   eye::placeStars(input, placedStars_);
   std::ranges::copy(placedStars_, starBuffer_.as<StarInstance>().begin());
 }
@@ -178,9 +215,11 @@ void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& ta
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, nullptr);
 }
 
-void ScenePass::drawTerrain(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
-                            const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first, uint32_t count) const {
-  drawWith(terrain_, commands, gpu, pools, draws, indirect, first, count);
+void ScenePass::drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
+                            const ChunkPools& pools, const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first,
+                            uint32_t count) const {
+  if (count == 0) return;
+  drawWith(haze == HazeBy::vertex ? terrain_ : wide_, commands, gpu, pools, draws, indirect, first, count);
 }
 
 void ScenePass::drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
@@ -203,12 +242,19 @@ void ScenePass::drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::Com
 }
 
 void ScenePass::drawSky(const vk::raii::CommandBuffer& commands) const {
-  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *sky_);
-  commands.draw(3, 1, 0, 0);
+  if (dome_) {
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *domeSky_);
+    commands.draw(2 * dome_->rings, dome_->strips, 2 * dome_->firstRing, dome_->firstStrip);
+  } else {
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *sky_);
+    commands.draw(3, 1, 0, 0);
+  }
+  constexpr uint32_t kSpotVertices = 6;
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *sun_);
+  commands.draw(kSpotVertices, 1, 0, 0);
   if (placedStars_.empty()) return;
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *star_);
   commands.bindVertexBuffers(0, *starBuffer_.buffer, {0});
-  constexpr uint32_t kSpotVertices = 6;
   commands.draw(kSpotVertices, static_cast<uint32_t>(placedStars_.size()), 0, 0);
 }
 

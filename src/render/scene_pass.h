@@ -4,6 +4,8 @@
 #include "geo/scene_bend.h"
 #include "render/chunk_pools.h"
 #include "render/draw_lists.h"
+#include "render/haze_width.h"
+#include "render/sky_dome.h"
 #include "render/star_field.h"
 #include "render/targets.h"
 
@@ -18,7 +20,8 @@ class ScenePass {
             const std::optional<SceneBend>& bend);
 
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
-  void placeStars(const FrameInput& input);  // those that drawSky draws
+  // What drawSky draws: the sky by dome or by pixel, and which stars.
+  void placeSky(const FrameInput& input, bool byPixel);
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
   // One render pass, or more that go on with what the first has drawn, or draw it over: begin, draw, end.
@@ -27,7 +30,7 @@ class ScenePass {
   void begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass,
              const std::optional<glm::vec3>& background) const;
   // Indirect commands `first` to `first + count - 1`; their firstInstance is the DrawData's index.
-  void drawTerrain(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
+  void drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
                    const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first, uint32_t count) const;
   // As drawTerrain, both faces, in the tints that the draws' records bring, see TintLists.
   void drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
@@ -43,12 +46,14 @@ class ScenePass {
 
   GpuBuffer frame_, starBuffer_;
   std::vector<StarInstance> placedStars_;
+  std::optional<DomePart> dome_;  // nothing: by pixel
   vk::raii::Sampler sampler_{nullptr};
   vk::raii::DescriptorSetLayout setLayout_{nullptr};
   vk::raii::DescriptorPool pool_{nullptr};
   vk::raii::DescriptorSet set_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};
-  vk::raii::Pipeline terrain_{nullptr}, tinted_{nullptr}, sky_{nullptr}, star_{nullptr};
+  vk::raii::Pipeline terrain_{nullptr}, wide_{nullptr}, tinted_{nullptr}, sky_{nullptr}, domeSky_{nullptr},
+      sun_{nullptr}, star_{nullptr};
 };
 
 }  // namespace eye

@@ -2,6 +2,9 @@
 
 #include <imgui.h>
 
+#include <array>
+
+#include "render/sky_dome.h"
 #include "terrain/chunk_codec.h"
 
 namespace eye {
@@ -34,7 +37,9 @@ Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
   const Pose pose{{0, 0, 10000}, 0, -90, 0};
   input.view =
       makeView(pose, symmetricFrustum(60, options.widthPx, options.heightPx, 1), options.widthPx, options.heightPx);
-  input.draws = {&draw, 1};
+  std::array draws{draw, draw};
+  draws[0].longestEdgeM = 0;  // both ways of drawing haze
+  input.draws = draws;
   input.overlay = [] {
     ImGui::Begin("warm-up");
     ImGui::TextUnformatted("every pipeline draws once");
@@ -42,6 +47,9 @@ Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
   };
   auto drawn = renderer.drawFrame(input);
   input.depthMapPx = glm::ivec2(32, 24);
+  const Pose above{{0, 0, 2 * kDomeTopM}, 0, -60, 0};  // where the sky is drawn by pixel
+  input.view =
+      makeView(above, symmetricFrustum(60, options.widthPx, options.heightPx, 1), options.widthPx, options.heightPx);
   input.lighting.sunDirectionEcef = {-1, 0, 0};  // night: the stars are out
   if (options.debugViews) {
     input.tint = Tint::level;

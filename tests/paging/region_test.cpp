@@ -7,6 +7,7 @@
 
 #include "paging/lod_select.h"
 #include "paging/synthetic_forest.h"
+#include "terrain/extent.h"
 
 namespace eye {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "terrain/chunk_codec.h"
 #include "terrain/clusters.h"
+#include "terrain/extent.h"
 
 namespace eye::test {
 namespace {
@@ -105,6 +106,7 @@ MadeChunk makeChunk(const Patch& patch, const HeightFunction& heightM, std::vect
   made.loaded.meta.originLattice = made.origin;
   buildClusters({made.loaded.meta.box, made.origin, patch.stepM}, mesh);
   made.loaded.surfaceIndexCount = static_cast<uint32_t>(mesh.indices.size());
+  made.loaded.longestEdgeM = longestEdgeM(mesh, patch.stepM);
   made.loaded.skirts = appendSkirts(mesh);
   made.loaded.texels = std::move(texels);
 
@@ -112,6 +114,7 @@ MadeChunk makeChunk(const Patch& patch, const HeightFunction& heightM, std::vect
   made.draw.originLattice = made.origin;
   made.draw.stepM = patch.stepM;
   made.draw.box = made.loaded.meta.box;
+  made.draw.longestEdgeM = made.loaded.longestEdgeM;
   const Mat3d enu = ecefFromEnu(midLat, midLon);
   const glm::vec3 east(enu[0]), north(enu[1]);
   made.draw.upEcef = glm::vec3(enu[2]);

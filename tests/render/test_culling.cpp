@@ -1,6 +1,8 @@
 // Occlusion culling: never a pixel, and the GPU decides as its CPU mirror does.
 #include <catch2/catch.hpp>
 
+#include <map>
+
 #include <random>
 
 #include "render/cull_lists.h"
@@ -183,9 +185,11 @@ TEST_CASE("frozen culling draws what was visible when it froze, wherever the eye
   away.freezeCulling = true;
   draw(*renderer, away);
   const CullReadBack frozen = renderer->readCulling();
+  std::map<uint32_t, uint32_t> fatesBefore;  // by cluster: the candidates' order is by haze, which hangs on the eye
+  for (size_t i = 0; i < before.candidates.size(); ++i) fatesBefore[before.candidates[i].cluster] = before.fates[i];
   size_t drawn = 0;
   for (size_t i = 0; i < frozen.early.size(); ++i) {
-    const bool wasVisible = (before.fates[i] & EYE_FATE_WHY) == EYE_FATE_VISIBLE;
+    const bool wasVisible = (fatesBefore.at(frozen.candidates[i].cluster) & EYE_FATE_WHY) == EYE_FATE_VISIBLE;
     CHECK(((frozen.fates[i] & EYE_FATE_EARLY) != 0) == wasVisible);
     drawn += wasVisible;
   }
