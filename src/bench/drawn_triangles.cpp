@@ -116,7 +116,8 @@ Result<DrawnTriangles> drawnTriangles(ImageGenerator& generator, ChunkShelf& she
       } else if (glm::dot(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), corners[0]) >= 0) {
         fate = TriangleFate::facingAway;
       } else {
-        ids.draw(corners[0], corners[1], corners[2], static_cast<uint32_t>(fateOf.size()));
+        const bool covers = ids.draw(corners[0], corners[1], corners[2], static_cast<uint32_t>(fateOf.size()));
+        if (!covers) fate = TriangleFate::betweenPixels;
         fateOf.push_back(&fate);
       }
     }

@@ -14,8 +14,9 @@ enum class TriangleFate : uint8_t {
   notSubmitted,  // in a cluster that culling left out
   offScreen,     // behind one plane of the frustum with all corners
   facingAway,
-  hidden,   // covers no pixel's centre, or something nearer does
-  visible,  // shows at least one pixel
+  betweenPixels,  // covers no pixel's centre
+  hidden,         // something nearer covers all that it does
+  visible,        // shows at least one pixel
 };
 
 // A run of a chunk's triangles that a draw may have: its surface, or one side's skirt.

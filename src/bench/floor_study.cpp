@@ -14,7 +14,6 @@
 namespace eye {
 namespace {
 
-constexpr int kSettleFrames = 3;  // chunks arrive in the first, visibility settles in the next two
 constexpr double kTriangleNs = 42 + 26, kPixelNs = 6.2, kClearNs = 0.38;
 const glm::vec3 kFlat{0.5f, 0.6f, 0.7f};
 
@@ -79,8 +78,9 @@ double floorModelMs(uint64_t triangles, uint64_t terrainPx, uint64_t picturePx) 
   return 1e-6 * (kTriangleNs * count + kPixelNs * overshade * px + kClearNs * static_cast<double>(picturePx));
 }
 
-Result<FloorView> measureFloor(SteeredGenerator& generator, const BenchView& view, ChunkShelf& shelf, int frames) {
-  for (int i = 0; i < kSettleFrames; ++i)
+Result<FloorView> measureFloor(SteeredGenerator& generator, const BenchView& view, ChunkShelf& shelf,
+                               const FloorEffort& effort) {
+  for (int i = 0; i < effort.settle; ++i)
     if (const auto record = generator.frame(view.pose); !record) return tl::unexpected(record.error());
   Renderer& renderer = generator.generator().renderer();
   const Result<DrawnTriangles> drawn = drawnTriangles(generator.generator(), shelf);
@@ -89,7 +89,8 @@ Result<FloorView> measureFloor(SteeredGenerator& generator, const BenchView& vie
 
   FloorView floor{.name = view.name};
   floor.visible = drawn->count(TriangleFate::visible);
-  floor.facing = floor.visible + drawn->count(TriangleFate::hidden);
+  floor.covering = floor.visible + drawn->count(TriangleFate::hidden);
+  floor.facing = floor.covering + drawn->count(TriangleFate::betweenPixels);
   floor.onScreen = floor.facing + drawn->count(TriangleFate::facingAway);
   floor.submitted = drawn->submitted();
   floor.chunks = settled.draws.size();
@@ -98,9 +99,9 @@ Result<FloorView> measureFloor(SteeredGenerator& generator, const BenchView& vie
   floor.isCulled = settled.depthMapPx.has_value();
 
   std::vector<TriangleReplay> replays;
-  replays.reserve(4);
-  for (const TriangleFate least :
-       {TriangleFate::visible, TriangleFate::hidden, TriangleFate::facingAway, TriangleFate::offScreen}) {
+  replays.reserve(5);
+  for (const TriangleFate least : {TriangleFate::visible, TriangleFate::hidden, TriangleFate::betweenPixels,
+                                   TriangleFate::facingAway, TriangleFate::offScreen}) {
     Result<TriangleReplay> replay = TriangleReplay::create(renderer, settled, *drawn, least);
     if (!replay) return tl::unexpected(replay.error());
     replays.push_back(std::move(*replay));
@@ -111,13 +112,14 @@ Result<FloorView> measureFloor(SteeredGenerator& generator, const BenchView& vie
 
   std::vector<Step> steps{{.of = &FloorTimes::bareTerrain, .draws = replays[0].draws(), .isFlat = true},
                           {.of = &FloorTimes::visible, .draws = replays[0].draws()},
-                          {.of = &FloorTimes::facing, .draws = replays[1].draws()},
-                          {.of = &FloorTimes::onScreen, .draws = replays[2].draws()},
-                          {.of = &FloorTimes::submitted, .draws = replays[3].draws()},
+                          {.of = &FloorTimes::covering, .draws = replays[1].draws()},
+                          {.of = &FloorTimes::facing, .draws = replays[2].draws()},
+                          {.of = &FloorTimes::onScreen, .draws = replays[3].draws()},
+                          {.of = &FloorTimes::submitted, .draws = replays[4].draws()},
                           {.of = &FloorTimes::drawn, .draws = {}, .isCulled = true},
                           {.of = &FloorTimes::frame, .draws = {}}};
   const size_t whole = steps.size() - 1;
-  for (int i = 0; i < frames; ++i) {
+  for (int i = 0; i < effort.frames; ++i) {
     for (size_t k = 0; k < steps.size(); ++k) {
       Step& step = steps[(k + static_cast<size_t>(i)) % steps.size()];
       if (&step != &steps[whole]) {
@@ -149,29 +151,31 @@ double floorRatio(const std::vector<FloorView>& views) {
 
 ReportTable floorTable(const std::vector<FloorView>& views) {
   ReportTable table{.caption = "The floor: the visible triangles alone, CPU ms, against the frame",
-                    .groups = {{"", 1}, {"triangles", 4}, {"", 2}, {"terrain alone", 2}, {"with the sky", 4}},
-                    .columns = {"view", "submitted", "on screen", "facing", "visible", "px each", "off px", "model",
-                                "replay", "floor", "frame", "ratio", "wall ratio"},
+                    .groups = {{"", 1}, {"triangles", 5}, {"", 2}, {"terrain alone", 2}, {"with the sky", 4}},
+                    .columns = {"view", "submitted", "on screen", "facing", "covering", "visible", "px each", "off px",
+                                "model", "replay", "floor", "frame", "ratio", "wall ratio"},
                     .isPrinted = true};
   for (const FloorView& v : views)
-    table.rows.push_back(
-        {v.name, fmt::format("{}", v.submitted), fmt::format("{}", v.onScreen), fmt::format("{}", v.facing),
-         fmt::format("{}", v.visible), fmt::format("{:.1f}", v.pxPerVisible()), fmt::format("{}", v.differingPx),
-         ms(floorModelMs(v.visible, v.terrainPx, v.picturePx)), ms(v.cpuMs.bareTerrain), ms(v.cpuMs.visible),
-         ms(v.cpuMs.frame), ms(v.cpuMs.frame / v.cpuMs.visible), ms(v.wallMs.frame / v.wallMs.visible)});
+    table.rows.push_back({v.name, fmt::format("{}", v.submitted), fmt::format("{}", v.onScreen),
+                          fmt::format("{}", v.facing), fmt::format("{}", v.covering), fmt::format("{}", v.visible),
+                          fmt::format("{:.1f}", v.pxPerVisible()), fmt::format("{}", v.differingPx),
+                          ms(floorModelMs(v.visible, v.terrainPx, v.picturePx)), ms(v.cpuMs.bareTerrain),
+                          ms(v.cpuMs.visible), ms(v.cpuMs.frame), ms(v.cpuMs.frame / v.cpuMs.visible),
+                          ms(v.wallMs.frame / v.wallMs.visible)});
   return table;
 }
 
 ReportTable floorRestTable(const std::vector<FloorView>& views) {
   ReportTable table{.caption = "Where the frame's CPU ms go",
-                    .columns = {"view", "visible", "sky", "hidden", "facing away", "off screen",
+                    .columns = {"view", "visible", "sky", "hidden", "between pixels", "facing away", "off screen",
                                 "culling and its draws", "selection", "frame", "chunks", "culled"},
                     .isPrinted = true};
   for (const FloorView& v : views) {
     const FloorTimes& t = v.cpuMs;
-    table.rows.push_back({v.name, ms(t.bareTerrain), ms(t.visible - t.bareTerrain), ms(t.facing - t.visible),
-                          ms(t.onScreen - t.facing), ms(t.submitted - t.onScreen), ms(t.drawn - t.submitted),
-                          ms(t.frame - t.drawn), ms(t.frame), fmt::format("{}", v.chunks), v.isCulled ? "yes" : "no"});
+    table.rows.push_back({v.name, ms(t.bareTerrain), ms(t.visible - t.bareTerrain), ms(t.covering - t.visible),
+                          ms(t.facing - t.covering), ms(t.onScreen - t.facing), ms(t.submitted - t.onScreen),
+                          ms(t.drawn - t.submitted), ms(t.frame - t.drawn), ms(t.frame), fmt::format("{}", v.chunks),
+                          v.isCulled ? "yes" : "no"});
   }
   return table;
 }
@@ -180,7 +184,8 @@ nlohmann::ordered_json floorJson(const FloorView& view) {
   const auto times = [](const FloorTimes& t) {
     return nlohmann::ordered_json{{"bare_terrain", t.bareTerrain},
                                   {"floor", t.visible},
-                                  {"and_hidden", t.facing},
+                                  {"and_hidden", t.covering},
+                                  {"and_between_pixels", t.facing},
                                   {"and_facing_away", t.onScreen},
                                   {"and_off_screen", t.submitted},
                                   {"drawn", t.drawn},
@@ -190,6 +195,7 @@ nlohmann::ordered_json floorJson(const FloorView& view) {
           {"submitted", view.submitted},
           {"on_screen", view.onScreen},
           {"facing", view.facing},
+          {"covering", view.covering},
           {"visible", view.visible},
           {"px_per_visible", view.pxPerVisible()},
           {"chunks", view.chunks},

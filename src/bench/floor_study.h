@@ -17,7 +17,8 @@ namespace eye {
 struct FloorTimes {
   double bareTerrain = 0;  // the visible triangles before a flat background
   double visible = 0;      // and the sky: the floor
-  double facing = 0;       // and what is hidden
+  double covering = 0;     // and what is hidden
+  double facing = 0;       // and what covers no pixel's centre
   double onScreen = 0;     // and what faces away
   double submitted = 0;    // and what is off the screen
   double drawn = 0;        // the frame's own draws with its culling passes
@@ -26,7 +27,8 @@ struct FloorTimes {
 
 struct FloorView {
   std::string name;
-  uint64_t submitted = 0, onScreen = 0, facing = 0, visible = 0;  // triangles, each a part of the one before
+  uint64_t submitted = 0, onScreen = 0, facing = 0, covering = 0,
+           visible = 0;  // triangles, each a part of the one before
   uint64_t chunks = 0, terrainPx = 0, picturePx = 0;
   uint64_t differingPx = 0;  // between the replay of the visible triangles and the frame
   bool isCulled = false;     // with a depth map
@@ -39,7 +41,13 @@ struct FloorView {
 // and a tenth for light and haze) times what 4x4 blocks shade beside it; 0.38 ns a pixel to clear. Without the sky.
 double floorModelMs(uint64_t triangles, uint64_t terrainPx, uint64_t picturePx);
 
-Result<FloorView> measureFloor(SteeredGenerator& generator, const BenchView& view, ChunkShelf& shelf, int frames);
+// Frames of each picture, and before them of the view: chunks arrive in the first, visibility settles in the next two,
+// and the selector makes its first comparison after 60.
+struct FloorEffort {
+  int frames = 24, settle = 100;
+};
+Result<FloorView> measureFloor(SteeredGenerator& generator, const BenchView& view, ChunkShelf& shelf,
+                               const FloorEffort& effort);
 
 // The real frames' CPU time over the floors', of all views together; NaN without any.
 double floorRatio(const std::vector<FloorView>& views);

@@ -157,18 +157,18 @@ void addPareto(const std::vector<ParetoResult>& results, const std::string& trut
                                   &ParetoResult::psnrDb, true));
   }
   report.tables.push_back(tableOf(results, front));
-  report.notes.push_back(
+  report.notes.emplace_back(
       "Truth of distances: " + truth +
       ". explained: the drawn distance lies within the true ones of the pixel and its eight neighbours, "
       "widened by 0.1 %. skyline: rows between the drawn and the true one, mean of the columns.");
-  report.notes.push_back(
+  report.notes.emplace_back(
       "Truth of colours: the mean of pictures whose rays are spread over the pixel, a tolerance of 0.125 px, "
       "trilinear.");
-  report.notes.push_back(
+  report.notes.emplace_back(
       "Settings of one block are drawn in turn, each block with the default of its size; of default: the median of the "
       "ratios of frames drawn behind one another, and by how much it may be off (1.57 distances of the quartiles over "
       "the root of the count). The plots put every setting on the default's scale by it.");
-  report.notes.push_back(
+  report.notes.emplace_back(
       "On the front: no other setting of that size explains as much, has a 99th percentile as small and a PSNR as "
       "high, "
       "and takes less time by more than the spread of both. The line in the plots is the front of that plot's two axes "

@@ -11,9 +11,11 @@ TriangleIds::TriangleIds(const View& view)
   ids_.resize(inverseZ_.size());
 }
 
-void TriangleIds::draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t id) {
-  if (glm::dot(glm::cross(b - a, c - a), a) >= 0) return;
+bool TriangleIds::draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t id) {
+  if (glm::dot(glm::cross(b - a, c - a), a) >= 0) return false;
+  bool covers = false;
   const auto paint = [&](size_t pixel, double inverseZ) {
+    covers = true;
     if (inverseZ <= inverseZ_[pixel]) return;
     inverseZ_[pixel] = inverseZ;
     ids_[pixel] = id;
@@ -30,6 +32,7 @@ void TriangleIds::draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t 
     if ((from.z >= nearM) != (to.z >= nearM)) kept[count++] = glm::mix(from, to, (nearM - from.z) / (to.z - from.z));
   }
   for (size_t i = 2; i < count; ++i) rasterize(view_, {kept[0], kept[i - 1], kept[i]}, paint);
+  return covers;
 }
 
 std::vector<uint32_t> TriangleIds::visibleIds() const {

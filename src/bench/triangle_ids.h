@@ -12,8 +12,8 @@ class TriangleIds {
  public:
   explicit TriangleIds(const View& view);  // of the view's size in pixels
   // Corners relative to the eye, ecef. Triangles that face away are left out; what reaches behind the near plane is
-  // clipped.
-  void draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t id);
+  // clipped. True where it covers some pixel's centre, hidden or not.
+  bool draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t id);
   // Those that show at least one pixel's centre, each once, ascending; and how many they are.
   std::vector<uint32_t> visibleIds() const;
   size_t visible() const { return visibleIds().size(); }

@@ -104,10 +104,11 @@ TEST_CASE("the floor's replay shows the frame, and each of its steps more triang
   if (!generator) return;
   ChunkShelf shelf(*reader);
   const uint64_t before = generator->generator().renderer().bytesResident();
-  const Result<FloorView> floor = measureFloor(*generator, lowView(*reader), shelf, 4);
+  const Result<FloorView> floor = measureFloor(*generator, lowView(*reader), shelf, {.frames = 4, .settle = 3});
   REQUIRE(floor);
   CHECK(floor->visible > 0);
-  CHECK(floor->visible < floor->facing);
+  CHECK(floor->visible < floor->covering);
+  CHECK(floor->covering <= floor->facing);
   CHECK(floor->facing <= floor->onScreen);
   CHECK(floor->onScreen < floor->submitted);
   CHECK(floor->isCulled);
