@@ -38,6 +38,7 @@
 // A group of the culling shader works on so many clusters, one of the depth map's on so many texels each way.
 #define EYE_CULL_GROUP 64
 #define EYE_DEPTH_GROUP 8
+#define EYE_MOST_SAMPLES 4  // a pixel, where not one
 // 2^13 texels: the largest depth map.
 #define EYE_MAX_DEPTH_LEVELS 14
 

@@ -125,6 +125,8 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   rendererOptions.vsync = options.vsync;
   rendererOptions.gpuBudgetBytes = options.cacheGpuMiB << 20;
   rendererOptions.debugViews = !options.headless || options.debugView.any();
+  rendererOptions.filter = options.sampler;
+  rendererOptions.samples = options.samples;
   rendererOptions.textureSize = database->info().textureSize;
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(rendererOptions);
   if (!renderer) return tl::unexpected(renderer.error());
@@ -201,6 +203,16 @@ bool ImageGenerator::sameAsLast(const Lighting& lighting) const {
 bool ImageGenerator::isFrozen(const DebugView& debug) const {
   constexpr int kSettling = 3;
   return debug.freeze && drawn_ && (!options_.debugView.freeze || settledFrames_ >= kSettling);
+}
+
+FrameInput ImageGenerator::lastInput() const {
+  EYE_CHECK(drawn_.has_value());
+  return {.view = view_,
+          .draws = draws_,
+          .lighting = drawn_->lighting,
+          .background = options_.background,
+          .depthMapPx = drawn_->depthMapPx,
+          .overlay = {}};
 }
 
 // One frame, in order.

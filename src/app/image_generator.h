@@ -55,6 +55,7 @@ class ImageGenerator {
   int widthPx() const { return output_.widthPx; }
   int heightPx() const { return output_.heightPx; }
   const View& view() const { return view_; }
+  FrameInput lastInput() const;  // what the last frame was drawn from, reading nothing back; until the next
   const Selection& selection() const { return selection_; }  // of the last frame; its nodes are the terrain's
   const TerrainCache& terrain() const { return pager_->cache(); }
 

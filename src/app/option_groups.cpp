@@ -101,6 +101,18 @@ void addQuality(CLI::App& app, Options& o) {
       ->check(within(0.05, 64.0))
       ->group(group);
   app.add_option_function<std::string>(
+         "--sampler", [&o](const std::string& t) { o.sampler = filterOf(t); },
+         "How imagery is read: nearest, bilinear within the nearest level of detail, trilinear;\n"
+         "auto (default): bilinear on a CPU, trilinear on a GPU")
+      ->type_name("auto/nearest/bilinear/trilinear")
+      ->check(CLI::IsMember({"auto", "nearest", "bilinear", "trilinear"}))
+      ->group(group);
+  app.add_option("--samples", o.samples, "Samples a pixel: 1 (default), or 4: smooth edges at about twice the time")
+      ->type_name("1/4")
+      ->check(wholeWithin(1, 4))
+      ->check(CLI::IsMember({1, 4}))
+      ->group(group);
+  app.add_option_function<std::string>(
          "--culling", [&o](const std::string& t) { o.culling = cullingOf(t); },
          "none, frustum (view frustum and horizon), or dynamic (default): hidden and\n"
          "back-facing clusters too, where that pays; the picture is the same")

@@ -77,6 +77,27 @@ CullingMode cullingOf(const std::string& text) {
   return text == "none" ? CullingMode::none : text == "frustum" ? CullingMode::frustum : CullingMode::dynamic;
 }
 
+TextureFilter filterOf(const std::string& text) {
+  return text == "nearest"     ? TextureFilter::nearest
+         : text == "bilinear"  ? TextureFilter::bilinear
+         : text == "trilinear" ? TextureFilter::trilinear
+                               : TextureFilter::device;
+}
+
+std::string nameOf(TextureFilter filter) {
+  switch (filter) {
+    case TextureFilter::nearest:
+      return "nearest";
+    case TextureFilter::bilinear:
+      return "bilinear";
+    case TextureFilter::trilinear:
+      return "trilinear";
+    case TextureFilter::device:
+      break;
+  }
+  return "auto";
+}
+
 std::string nameOf(CullingMode culling) {
   return culling == CullingMode::none ? "none" : culling == CullingMode::frustum ? "frustum" : "dynamic";
 }

@@ -27,6 +27,8 @@ void setBackground(Options& options, const std::string& text);
 void setDate(Options& options, const std::string& text);
 CullingMode cullingOf(const std::string& text);
 std::string nameOf(CullingMode culling);
+TextureFilter filterOf(const std::string& text);
+std::string nameOf(TextureFilter filter);  // auto, nearest ...
 bool onOff(const std::string& name, const std::string& text);
 
 }  // namespace eye

@@ -103,9 +103,10 @@ std::string Options::settingsLine() const {
                                                       (*frustumDeg)[2], (*frustumDeg)[3])
                                         : fmt::format("fov={}", fovDeg);
   return fmt::format(
-      "size={}x{} {}{} near={} sse={} culling={} depth-map={} selector={}{} horizon={} predictor={} cache-ram={} "
+      "size={}x{} {}{} near={} sse={} sampler={} samples={} culling={} depth-map={} selector={}{} horizon={} "
+      "predictor={} cache-ram={} "
       "cache-gpu={} offline={} redraw={}",
-      widthPx, heightPx, angles, offset, nearM, ssePx, nameOf(culling), map,
+      widthPx, heightPx, angles, offset, nearM, ssePx, nameOf(sampler), samples, nameOf(culling), map,
       selectorMode == SelectorMode::paper ? "paper" : "adaptive", selectorRules.empty() ? "" : ":" + selectorRules,
       horizon == HorizonTest::paper ? "paper" : "ellipsoid",
       predictor == PredictorMode::none ? "none" : fmt::format("kalman-{}", predictorStates), cacheRamMiB, cacheGpuMiB,

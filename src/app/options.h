@@ -12,6 +12,7 @@
 #include "control/selector_rules.h"
 #include "geo/sun.h"
 #include "paging/lod_select.h"
+#include "render/picture_quality.h"
 
 namespace eye {
 
@@ -46,6 +47,8 @@ struct Options {
 
   // Quality and budgets.
   double ssePx = 1;
+  TextureFilter sampler = TextureFilter::device;
+  int samples = 1;  // a pixel: 1 or 4
   CullingMode culling = CullingMode::dynamic;
   DepthMapMode depthMap = DepthMapMode::automatic;  // read with dynamic culling alone
   glm::ivec2 depthMapPx{0, 0};                      // with DepthMapMode::fixed

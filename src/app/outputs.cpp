@@ -27,7 +27,9 @@ Result<void> checkOutput(const std::string& path) {
               fmt::format("{}: cannot write there: {}; make the folder or choose another", path, std::strerror(errno)));
 }
 
-// Slant range from reversed-Z depth: depth = near / z, and the ray through a pixel has z = 1.
+}  // namespace
+
+// Depth = near / z, and the ray through a pixel has z = 1.
 std::vector<float> slantRange(std::span<const float> depth, const View& view) {
   std::vector<float> rangeM(depth.size(), std::numeric_limits<float>::quiet_NaN());
   size_t i = 0;
@@ -40,8 +42,6 @@ std::vector<float> slantRange(std::span<const float> depth, const View& view) {
   }
   return rangeM;
 }
-
-}  // namespace
 
 Result<void> checkOutputs(const Options& options) {
   for (const std::string& path :

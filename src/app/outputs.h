@@ -15,6 +15,9 @@ Result<void> checkOutputs(const Options& options);
 Result<void> writeScreenshot(const Options& options, const ImageGenerator& generator);
 Result<void> writeDistances(const Options& options, const ImageGenerator& generator);
 
+// Metres along each pixel's ray from reversed-Z depth, NaN where there is sky.
+std::vector<float> slantRange(std::span<const float> depth, const View& view);
+
 // The first of several errors is the run's; those behind it go to the log, so that none is lost.
 class FirstError {
  public:

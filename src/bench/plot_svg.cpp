@@ -57,6 +57,18 @@ Axis logarithmicAxis(const Range& range) {
   return axis;
 }
 
+// From one of 1, 2, 5, 10 ... to another.
+Axis finelyLogarithmicAxis(const Range& range) {
+  if (range.isEmpty() || range.low <= 0) return linearAxis({1, 10}, false);
+  std::vector<double> steps;
+  for (double decade = std::pow(10, std::floor(std::log10(range.low))); decade <= 10 * range.high; decade *= 10)
+    for (const double factor : {1.0, 2.0, 5.0}) steps.push_back(factor * decade);
+  const auto end = std::ranges::find_if(steps, [&](double step) { return step >= range.high * 1.001; });
+  auto begin = end - 1;
+  while (begin != steps.begin() && *begin > range.low) --begin;
+  return {*begin, *end, true, {begin, end + 1}};
+}
+
 double xPx(double share) {
   return kLeft + share * (kWidth - kLeft - kRight);
 }
@@ -116,7 +128,7 @@ std::string lines(const ReportPlot& plot, const Axis& y) {
   Range range;
   for (const Series& series : plot.series)
     for (const double value : series.x) range.add(value);
-  const Axis x = linearAxis(range, false);
+  const Axis x = plot.isLogarithmicX ? finelyLogarithmicAxis(range) : linearAxis(range, false);
   std::string svg;
   for (const double tick : x.ticks)
     svg += text(xPx(x.share(tick)), kHeight - kBottom + 17, "middle", fmt::format("{:g}", tick));
@@ -127,8 +139,10 @@ std::string lines(const ReportPlot& plot, const Axis& y) {
       if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i]) || (y.isLogarithmic && series.y[i] <= 0)) continue;
       const double px = xPx(x.share(series.x[i])), py = yPx(y.share(series.y[i]));
       if (series.areDots)
-        svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\" fill-opacity=\"0.6\"/>", px, py,
-                           kColours[s % kColours.size()]);
+        svg +=
+            fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:g}\" fill=\"{}\" fill-opacity=\"0.6\">{}</circle>",
+                        px, py, series.dotPx, kColours[s % kColours.size()],
+                        i < series.labels.size() ? "<title>" + escapeHtml(series.labels[i]) + "</title>" : "");
       else
         points += fmt::format("{:.1f},{:.1f} ", px, py);
     }
@@ -149,7 +163,7 @@ std::string plotSvg(const ReportPlot& plot) {
     for (const double value : series.y)
       if (!plot.isLogarithmic || value > 0) range.add(value);
   const bool isBars = !plot.categories.empty();
-  const Axis y = plot.isLogarithmic ? logarithmicAxis(range) : linearAxis(range, true);
+  const Axis y = plot.isLogarithmic ? logarithmicAxis(range) : linearAxis(range, isBars || plot.isFromZero);
   return fmt::format("<svg viewBox=\"0 0 {} {}\" width=\"{}\" role=\"img\" aria-label=\"{}\">{}{}</svg>", kWidth,
                      kHeight, kWidth, escapeHtml(plot.title), frame(plot, y), isBars ? bars(plot, y) : lines(plot, y));
 }

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -50,6 +51,22 @@ std::string reportJson(const Report& report) {
   for (const SuiteReport& suite : report.suites)
     json["suites"][suite.name] = {{"summary", suite.summary}, {"rows", suite.rows}};
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string tableText(const ReportTable& table) {
+  std::vector<size_t> widths;
+  for (const std::string& column : table.columns) widths.push_back(column.size());
+  for (const std::vector<std::string>& row : table.rows)
+    for (size_t i = 0; i < std::min(row.size(), widths.size()); ++i) widths[i] = std::max(widths[i], row[i].size());
+  const auto line = [&](const std::vector<std::string>& cells) {
+    std::string text;
+    for (size_t i = 0; i < std::min(cells.size(), widths.size()); ++i)
+      text += i == 0 ? fmt::format("{:<{}}", cells[i], widths[i]) : fmt::format("  {:>{}}", cells[i], widths[i]);
+    return text + "\n";
+  };
+  std::string text = table.caption + "\n" + line(table.columns);
+  for (const std::vector<std::string>& row : table.rows) text += line(row);
+  return text;
 }
 
 Result<void> writeReport(const Report& report, const std::string& folder) {

@@ -20,18 +20,23 @@ struct ReportTable {
   std::vector<Group> groups{};  // above the columns; empty: none
   std::vector<std::string> columns{};
   std::vector<std::vector<std::string>> rows{};
+  bool isPrinted = false;  // the program shows it too
 };
 
 struct Series {
   std::string name{};
-  std::vector<double> x{}, y{};  // lines: points; bars: y by category, x empty. Not finite: left out
-  bool areDots = false;          // the points by themselves instead of the line through them
+  std::vector<double> x{}, y{};       // lines: points; bars: y by category, x empty. Not finite: left out
+  bool areDots = false;               // the points by themselves instead of the line through them
+  double dotPx = 2.5;                 // radius
+  std::vector<std::string> labels{};  // of the dots, shown under the pointer
 };
 
 struct ReportPlot {
   std::string title{}, xLabel{}, yLabel{};
   std::vector<std::string> categories{};  // not empty: grouped bars
   bool isLogarithmic = false;             // the y axis; values above 0
+  bool isLogarithmicX = false;
+  bool isFromZero = true;  // a linear y axis
   std::vector<Series> series{};
 };
 
@@ -62,6 +67,7 @@ std::string loadLine();     // of the last minute: what else the machine does
 
 std::string reportJson(const Report& report);
 std::string reportHtml(const Report& report);
+std::string tableText(const ReportTable& table);  // aligned columns, for a terminal
 // An inline picture, readable on light and on dark pages.
 std::string plotSvg(const ReportPlot& plot);
 std::string escapeHtml(const std::string& text);

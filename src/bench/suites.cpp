@@ -13,6 +13,8 @@ std::span<const Suite> suites() {
        {"globe", "paper 004's Table 3: levels, blocks and culling from space, flights over the poles", runGlobeSuite},
        {"panorama", "paper 002's Tables 1 to 3: how well the distances of peaks are told", runPanoramaSuite},
        {"host", "a host on the loopback: transport delay, floods, bad links, questions", runHostSuite},
+       {"pareto", "run time against error: tolerance, culling, depth maps, samplers, samples, sizes", runParetoSuite},
+       {"floor", "a frame's time against that of its visible triangles alone", runFloorSuite},
        {"stability", "figures with limits: heights, poles, lenses, a still eye, a day of clocks, wild states",
         runStabilitySuite}});
   return kSuites;

@@ -11,9 +11,11 @@ TriangleIds::TriangleIds(const View& view)
   ids_.resize(inverseZ_.size());
 }
 
-void TriangleIds::draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t id) {
-  if (glm::dot(glm::cross(b - a, c - a), a) >= 0) return;
+bool TriangleIds::draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t id) {
+  if (glm::dot(glm::cross(b - a, c - a), a) >= 0) return false;
+  bool covers = false;
   const auto paint = [&](size_t pixel, double inverseZ) {
+    covers = true;
     if (inverseZ <= inverseZ_[pixel]) return;
     inverseZ_[pixel] = inverseZ;
     ids_[pixel] = id;
@@ -30,14 +32,20 @@ void TriangleIds::draw(const Vec3d& a, const Vec3d& b, const Vec3d& c, uint32_t 
     if ((from.z >= nearM) != (to.z >= nearM)) kept[count++] = glm::mix(from, to, (nearM - from.z) / (to.z - from.z));
   }
   for (size_t i = 2; i < count; ++i) rasterize(view_, {kept[0], kept[i - 1], kept[i]}, paint);
+  return covers;
 }
 
-size_t TriangleIds::visible() const {
+std::vector<uint32_t> TriangleIds::visibleIds() const {
   std::vector<uint32_t> seen;
   for (size_t i = 0; i < ids_.size(); ++i)
     if (inverseZ_[i] > 0) seen.push_back(ids_[i]);
   std::ranges::sort(seen);
-  return static_cast<size_t>(std::ranges::unique(seen).begin() - seen.begin());
+  seen.erase(std::ranges::unique(seen).begin(), seen.end());
+  return seen;
+}
+
+size_t TriangleIds::pixelsShown() const {
+  return static_cast<size_t>(std::ranges::count_if(inverseZ_, [](double inverseZ) { return inverseZ > 0; }));
 }
 
 }  // namespace eye

@@ -51,7 +51,7 @@ GpuImage createImage(const GpuDevice& gpu, const ImageSpec& spec) {
   vk::ImageCreateInfo info;
   info.setImageType(vk::ImageType::e2D).setFormat(spec.format).setUsage(spec.usage);
   info.setExtent({static_cast<uint32_t>(spec.widthPx), static_cast<uint32_t>(spec.heightPx), 1});
-  info.setMipLevels(spec.mipLevels).setArrayLayers(spec.layers);
+  info.setMipLevels(spec.mipLevels).setArrayLayers(spec.layers).setSamples(spec.samples);
   made.image = vk::raii::Image(gpu.device, info);
   const vk::MemoryRequirements needs = made.image.getMemoryRequirements();
   made.bytes = needs.size;

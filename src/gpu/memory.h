@@ -43,6 +43,7 @@ struct ImageSpec {
   vk::ImageUsageFlags usage;
   vk::ImageAspectFlags aspect = vk::ImageAspectFlagBits::eColor;
   uint32_t mipLevels = 1, layers = 1;
+  vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   bool array = false;  // the view is an array, even of one layer
 };
 

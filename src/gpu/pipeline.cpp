@@ -14,14 +14,17 @@ vk::raii::ShaderModule createModule(const GpuDevice& gpu, std::span<const uint32
 vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
                                   const PipelineSpec& spec) {
   const vk::raii::ShaderModule vertex = createModule(gpu, spec.vertexSpirv);
-  const vk::raii::ShaderModule fragment = createModule(gpu, spec.fragmentSpirv);
   std::vector<vk::SpecializationMapEntry> entries;
   for (uint32_t id = 0; id < spec.vertexConstants.size(); ++id) entries.emplace_back(id, id * 4, 4);
   vk::SpecializationInfo constants;
   constants.setMapEntries(entries).setData<uint32_t>(spec.vertexConstants);
-  const std::array stages{vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main",
-                                                            entries.empty() ? nullptr : &constants),
-                          vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main")};
+  std::vector<vk::PipelineShaderStageCreateInfo> stages;
+  stages.push_back({{}, vk::ShaderStageFlagBits::eVertex, *vertex, "main", entries.empty() ? nullptr : &constants});
+  vk::raii::ShaderModule fragment(nullptr);
+  if (!spec.fragmentSpirv.empty()) {
+    fragment = createModule(gpu, spec.fragmentSpirv);
+    stages.push_back({{}, vk::ShaderStageFlagBits::eFragment, *fragment, "main"});
+  }
 
   vk::PipelineVertexInputStateCreateInfo vertexInput;
   vertexInput.setVertexBindingDescriptions(spec.bindings).setVertexAttributeDescriptions(spec.attributes);
@@ -30,7 +33,7 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
   const vk::PipelineViewportStateCreateInfo viewport({}, 1, nullptr, 1, nullptr);
   vk::PipelineRasterizationStateCreateInfo raster;
   raster.setCullMode(spec.cull).setFrontFace(vk::FrontFace::eCounterClockwise).setLineWidth(1.0f);
-  const vk::PipelineMultisampleStateCreateInfo samples({}, vk::SampleCountFlagBits::e1);
+  const vk::PipelineMultisampleStateCreateInfo samples({}, spec.samples);
   static_assert(EYE_REVERSED_Z == 1, "the comparisons below and the cleared depth belong together");
   const vk::PipelineDepthStencilStateCreateInfo depth(
       {}, spec.depth != DepthUse::none, spec.depth == DepthUse::testAndWrite,
@@ -42,12 +45,14 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
   target.setSrcColorBlendFactor(vk::BlendFactor::eOne).setDstColorBlendFactor(vk::BlendFactor::eOne);
   target.setSrcAlphaBlendFactor(vk::BlendFactor::eZero).setDstAlphaBlendFactor(vk::BlendFactor::eOne);
   vk::PipelineColorBlendStateCreateInfo blend;
-  blend.setAttachments(target);
+  const bool hasColour = spec.colourFormat != vk::Format::eUndefined;
+  if (hasColour) blend.setAttachments(target);
   const std::array dynamicStates{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   vk::PipelineDynamicStateCreateInfo dynamic;
   dynamic.setDynamicStates(dynamicStates);
   vk::PipelineRenderingCreateInfo rendering;
-  rendering.setColorAttachmentFormats(spec.colourFormat).setDepthAttachmentFormat(spec.depthFormat);
+  if (hasColour) rendering.setColorAttachmentFormats(spec.colourFormat);
+  rendering.setDepthAttachmentFormat(spec.depthFormat);
 
   vk::GraphicsPipelineCreateInfo info;
   info.setStages(stages).setPVertexInputState(&vertexInput).setPInputAssemblyState(&assembly);

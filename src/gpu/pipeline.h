@@ -16,11 +16,12 @@ enum class DepthUse {
 };
 
 struct PipelineSpec {
-  std::span<const uint32_t> vertexSpirv, fragmentSpirv;
+  std::span<const uint32_t> vertexSpirv, fragmentSpirv;  // no fragment shader: depth alone
   vk::PipelineLayout layout;
   std::vector<vk::VertexInputBindingDescription> bindings;
   std::vector<vk::VertexInputAttributeDescription> attributes;
-  vk::Format colourFormat = vk::Format::eUndefined;
+  vk::Format colourFormat = vk::Format::eUndefined;  // undefined: the pass has no colour
+  vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
   vk::Format depthFormat = vk::Format::eUndefined;  // of the pass, used or not
   DepthUse depth = DepthUse::none;
   std::vector<uint32_t> vertexConstants{};  // the vertex shader's specialization constants 0, 1, 2 ..., as bits

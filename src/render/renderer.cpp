@@ -8,6 +8,7 @@
 #include "gpu/timestamps.h"
 #include "render/cull_pass.h"
 #include "render/debug_views.h"
+#include "render/farthest_sample.h"
 #include "render/frame_data.h"
 #include "render/haze_width.h"
 #include "render/overlay.h"
@@ -29,6 +30,7 @@ struct Renderer::Impl {
   std::unique_ptr<DrawLists> lists;
   std::unique_ptr<CullLists> cullLists;
   std::unique_ptr<CullPass> cull;
+  std::unique_ptr<FarthestSample> farthest;  // null with one sample a pixel
   std::unique_ptr<ScenePass> scene;
   std::unique_ptr<RasterOverlap> overlap;
   std::unique_ptr<DebugViews> debug;  // null unless the options ask for it
@@ -63,6 +65,16 @@ glm::ivec2 usableMap(glm::ivec2 mapPx, glm::ivec2 picturePx) {
   return glm::max(mapPx, (picturePx + (kMostPixelsPerTexel - 1)) / kMostPixelsPerTexel);
 }
 
+vk::SampleCountFlagBits sampleCount(const RendererOptions& options) {
+  return options.samples > 1 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
+}
+
+bool drawsSamples(const GpuDevice& gpu, vk::SampleCountFlagBits samples) {
+  const vk::PhysicalDeviceLimits& limits = gpu.properties.limits;
+  return static_cast<bool>(limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
+                           limits.sampledImageDepthSampleCounts & samples);
+}
+
 bool pyramidOnHost(const RendererOptions& options, const GpuDevice& gpu) {
   return options.depthPyramid == DepthPyramidBy::host ||
          (options.depthPyramid == DepthPyramidBy::device && gpu.properties.deviceType == vk::PhysicalDeviceType::eCpu);
@@ -93,6 +105,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     if (!gpu) return tl::unexpected(gpu.error());
     impl->gpu = std::move(*gpu);
     const GpuDevice& device = *impl->gpu;
+    if (!drawsSamples(device, sampleCount(options)))
+      return fail(ErrorKind::unsupported, fmt::format("{} draws no pictures with {} samples a pixel: give --samples 1",
+                                                      device.description.name, options.samples));
     auto pools = ChunkPools::create(device, options.gpuBudgetBytes, options.textureSize);
     if (!pools) return tl::unexpected(pools.error());
     impl->pools = std::move(*pools);
@@ -102,8 +117,13 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     const std::string cachePath = pipelineCachePath(device);
     impl->cache = loadPipelineCache(device, cachePath);
     GLFWwindow* window = options.window ? impl->window->handle() : nullptr;
-    impl->scene =
-        std::make_unique<ScenePass>(device, impl->cache, impl->colourFormat(), options.debugViews, options.bend);
+    impl->scene = std::make_unique<ScenePass>(device, impl->cache,
+                                              SceneOptions{.colourFormat = impl->colourFormat(),
+                                                           .samples = sampleCount(options),
+                                                           .filter = options.filter,
+                                                           .withTints = options.debugViews,
+                                                           .bend = options.bend});
+    if (options.samples > 1) impl->farthest = std::make_unique<FarthestSample>(device, impl->cache);
     impl->lists = std::make_unique<DrawLists>(device);
     impl->cullLists = std::make_unique<CullLists>(device, pyramidOnHost(options, device));
     impl->cull = std::make_unique<CullPass>(device, impl->cache);
@@ -150,6 +170,9 @@ uint64_t Renderer::bytesResident() const {
 }
 const DeviceDescription& Renderer::device() const {
   return impl_->gpu->description;
+}
+TextureFilter Renderer::textureFilter() const {
+  return filterOn(*impl_->gpu, impl_->options.filter);
 }
 uint64_t Renderer::validationMessages() const {
   return impl_->gpu->messages.load();
@@ -217,7 +240,8 @@ void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
   if (widthPx == targets.widthPx && heightPx == targets.heightPx) return;
   targets = {};  // the old ones first: both at once may not fit
   drawn = false;
-  targets = createTargets(*gpu, widthPx, heightPx, colourFormat());
+  targets = createTargets(*gpu, widthPx, heightPx, colourFormat(), sampleCount(options));
+  if (farthest) farthest->bind(*gpu, targets, *cullLists);
   overlay->bindTargets(*gpu, targets);
 }
 
@@ -229,6 +253,7 @@ bool Renderer::Impl::prepareCulling(const FrameInput& input, size_t byVertex) {
   if (!CullLists::fits(*gpu, input.draws, picturePx, mapPx)) return false;
   if (cullLists->reserve(*gpu, input.draws, picturePx, mapPx)) {
     cull->bind(*gpu, *pools, *cullLists);
+    if (farthest) farthest->bind(*gpu, targets, *cullLists);
     if (debug) debug->bind(*gpu, *cullLists);
   }
   cullLists->write(input.draws, byVertex, input.view, scene->frame().clipFromEcef, mapPx, input.freezeCulling);
@@ -236,7 +261,7 @@ bool Renderer::Impl::prepareCulling(const FrameInput& input, size_t byVertex) {
 }
 
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
-  scene->begin(commands, targets, ScenePass::Pass::first, input.background);
+  scene->begin(commands, targets, ScenePass::Pass::whole, input.background);
   const uint32_t batch = overlap->batch(counts.draws());
   const auto draw = [&](HazeBy haze, const DrawRange& range) {
     for (uint32_t done = 0; done < range.count(); done += batch) {
@@ -281,7 +306,11 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
   scene->end(commands);
   timestamps->mark(commands, "early");
   if (!input.freezeCulling) {
-    cull->recordDepthCopy(commands, targets, *cullLists);
+    if (farthest) {
+      farthest->record(commands, targets);
+    } else {
+      cull->recordDepthCopy(commands, targets, *cullLists);
+    }
     if (cullLists->pyramidOnHost()) {
       buildPyramidOnHost();
     } else {
@@ -322,6 +351,7 @@ void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, b
   recordBarriers(commands, toCopy);
   if (input.readColour) recordReadBack(commands, targets.colour, targets.colourBack);
   if (input.readDepth) {
+    if (targets.isSampled()) scene->drawDepthAtCentres(commands, *gpu, targets, *pools, *lists, counts.draws());
     const std::array depthToCopy{imageBarrier(targets.depth, usageDepthTarget(), usageCopySource())};
     recordBarriers(commands, depthToCopy);
     recordReadBack(commands, targets.depth, targets.depthBack);

@@ -17,6 +17,7 @@
 #include "gpu/device_description.h"
 #include "gpu/window_keys.h"
 #include "paging/terrain_cache.h"
+#include "render/picture_quality.h"
 #include "shared/cull_types.h"
 
 namespace eye {
@@ -35,7 +36,9 @@ struct RendererOptions {
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
   int textureSize = 128;                          // of the terrain database
   DepthPyramidBy depthPyramid = DepthPyramidBy::device;
-  bool airByPixel = false;          // all haze and sky: what both by vertex are judged by, see haze_width.h, sky_dome.h
+  bool airByPixel = false;  // all haze and sky: what both by vertex are judged by, see haze_width.h, sky_dome.h
+  TextureFilter filter = TextureFilter::device;
+  int samples = 1;                  // a pixel, 1 or 4; depth is read back at the pixels' centres with either
   bool debugViews = false;          // FrameInput's tint and showDepthMap work
   std::optional<SceneBend> bend{};  // terrain is bent by this about the eye; not the debug views'
 };
@@ -146,6 +149,7 @@ class Renderer final : public GpuStore {
   int widthPx() const;
   int heightPx() const;
   const DeviceDescription& device() const;
+  TextureFilter textureFilter() const;  // never `device`: what that means here
   uint64_t validationMessages() const;
 
  private:

@@ -33,12 +33,12 @@ vk::raii::DescriptorSetLayout createSetLayout(const GpuDevice& gpu) {
   return {gpu.device, vk::DescriptorSetLayoutCreateInfo({}, bindings)};
 }
 
-// Between mip levels a CPU device takes the nearest, which saves it 4 to 7 % of a frame; others blend.
-vk::raii::Sampler createSampler(const GpuDevice& gpu) {
-  const bool onCpu = gpu.properties.deviceType == vk::PhysicalDeviceType::eCpu;
+vk::raii::Sampler createSampler(const GpuDevice& gpu, TextureFilter filter) {
+  const vk::Filter within = filter == TextureFilter::nearest ? vk::Filter::eNearest : vk::Filter::eLinear;
+  const bool blends = filter == TextureFilter::trilinear;
   vk::SamplerCreateInfo info;
-  info.setMagFilter(vk::Filter::eLinear).setMinFilter(vk::Filter::eLinear).setMaxLod(VK_LOD_CLAMP_NONE);
-  info.setMipmapMode(onCpu ? vk::SamplerMipmapMode::eNearest : vk::SamplerMipmapMode::eLinear);
+  info.setMagFilter(within).setMinFilter(within).setMaxLod(VK_LOD_CLAMP_NONE);
+  info.setMipmapMode(blends ? vk::SamplerMipmapMode::eLinear : vk::SamplerMipmapMode::eNearest);
   info.setAddressModeU(vk::SamplerAddressMode::eClampToEdge).setAddressModeV(vk::SamplerAddressMode::eClampToEdge);
   return {gpu.device, info};
 }
@@ -136,12 +136,18 @@ PipelineSpec starSpec() {
 
 }  // namespace
 
-ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat,
-                     bool withTints, const std::optional<SceneBend>& bend) {
+// Between mip levels a CPU device takes the nearest, which saves it 4 to 7 % of a frame; others blend.
+TextureFilter filterOn(const GpuDevice& gpu, TextureFilter filter) {
+  if (filter != TextureFilter::device) return filter;
+  const bool onCpu = gpu.properties.deviceType == vk::PhysicalDeviceType::eCpu;
+  return onCpu ? TextureFilter::bilinear : TextureFilter::trilinear;
+}
+
+ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const SceneOptions& options) {
   frame_ = createBuffer(gpu, sizeof(shader::FrameData), vk::BufferUsageFlagBits::eUniformBuffer, MemoryUse::upload);
   starBuffer_ = createBuffer(gpu, stars().size() * sizeof(StarInstance), vk::BufferUsageFlagBits::eVertexBuffer,
                              MemoryUse::upload);
-  sampler_ = createSampler(gpu);
+  sampler_ = createSampler(gpu, filterOn(gpu, options.filter));
   setLayout_ = createSetLayout(gpu);
   const std::array sizes{vk::DescriptorPoolSize(Type::eUniformBuffer, 1),
                          vk::DescriptorPoolSize(Type::eCombinedImageSampler, 1)};
@@ -151,15 +157,22 @@ ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
   layout_ = vk::raii::PipelineLayout(gpu.device, vk::PipelineLayoutCreateInfo({}, *setLayout_));
   const auto make = [&](PipelineSpec spec) {
     spec.layout = *layout_;
-    spec.colourFormat = colourFormat;
+    spec.colourFormat = options.colourFormat;
     spec.depthFormat = kDepthFormat;
+    spec.samples = options.samples;
     return createPipeline(gpu, cache, spec);
   };
   PipelineSpec terrain = terrainSpec(), wide = wideSpec();
-  if (bend) terrain.vertexConstants = wide.vertexConstants = bendConstants(*bend);
-  terrain_ = make(std::move(terrain));
+  if (options.bend) terrain.vertexConstants = wide.vertexConstants = bendConstants(*options.bend);
+  terrain_ = make(terrain);
   wide_ = make(std::move(wide));
-  if (withTints) tinted_ = make(tintedSpec());
+  if (options.samples != vk::SampleCountFlagBits::e1) {
+    terrain.fragmentSpirv = {};
+    terrain.layout = *layout_;
+    terrain.depthFormat = kDepthFormat;
+    depthAtCentres_ = createPipeline(gpu, cache, terrain);
+  }
+  if (options.withTints) tinted_ = make(tintedSpec());
   sky_ = make(skySpec());
   domeSky_ = make(domeSpec());
   sun_ = make(sunSpec());
@@ -185,34 +198,61 @@ void ScenePass::placeSky(const FrameInput& input, bool byPixel) {
 
 void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass,
                       const std::optional<glm::vec3>& background) const {
-  if (pass != Pass::first) {
-    const std::array barriers{imageBarrier(targets.colour, usageColourTarget(), usageColourTarget()),
-                              imageBarrier(targets.depth, usageDepthTarget(), usageDepthTarget())};
-    recordBarriers(commands, barriers);
-  } else {
-    // The last frame may have copied from both.
-    const Usage before = usageDiscarded(vk::PipelineStageFlagBits2::eTransfer);
-    const std::array barriers{imageBarrier(targets.colour, before, usageColourTarget()),
-                              imageBarrier(targets.depth, before, usageDepthTarget())};
-    recordBarriers(commands, barriers);
-  }
+  const bool isSampled = targets.isSampled(), begins = pass == Pass::first || pass == Pass::whole;
+  // The last frame may have copied from both.
+  const Usage copied = usageDiscarded(vk::PipelineStageFlagBits2::eTransfer);
+  const Usage colourBefore = begins ? copied : usageColourTarget(), depthBefore = begins ? copied : usageDepthTarget();
+  std::vector barriers{imageBarrier(targets.colour, colourBefore, usageColourTarget()),
+                       imageBarrier(isSampled ? targets.depthSamples : targets.depth, depthBefore, usageDepthTarget())};
+  if (isSampled) barriers.push_back(imageBarrier(targets.colourSamples, colourBefore, usageColourTarget()));
+  recordBarriers(commands, barriers);
   using Load = vk::AttachmentLoadOp;
   const vk::Rect2D all({0, 0}, {static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx)});
   vk::RenderingAttachmentInfo colour, depth;
-  colour.setImageView(*targets.colour.view).setImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
+  colour.setImageView(isSampled ? *targets.colourSamples.view : *targets.colour.view);
+  colour.setImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
+  if (isSampled && pass != Pass::first) {
+    colour.setResolveMode(vk::ResolveModeFlagBits::eAverage).setResolveImageView(*targets.colour.view);
+    colour.setResolveImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
+  }
   const bool goesOn = pass == Pass::goesOn;
   colour.setLoadOp(goesOn ? Load::eLoad : background ? Load::eClear : Load::eDontCare);
   if (background) colour.setClearValue(vk::ClearColorValue(background->r, background->g, background->b, 1.0f));
-  depth.setImageView(*targets.depth.view).setImageLayout(vk::ImageLayout::eDepthAttachmentOptimal);
+  depth.setImageView(isSampled ? *targets.depthSamples.view : *targets.depth.view);
+  depth.setImageLayout(vk::ImageLayout::eDepthAttachmentOptimal);
   depth.setLoadOp(goesOn ? Load::eLoad : Load::eClear);
   depth.setClearValue(vk::ClearDepthStencilValue(static_cast<float>(EYE_CLEAR_DEPTH), 0));
   vk::RenderingInfo info;
   info.setRenderArea(all).setLayerCount(1).setColorAttachments(colour).setPDepthAttachment(&depth);
+  beginWith(commands, info);
+}
+
+// Viewport, scissor and descriptors are those of every pass.
+void ScenePass::beginWith(const vk::raii::CommandBuffer& commands, const vk::RenderingInfo& info) const {
+  const vk::Extent2D& extent = info.renderArea.extent;
   commands.beginRendering(info);
-  commands.setViewport(
-      0, vk::Viewport(0, 0, static_cast<float>(targets.widthPx), static_cast<float>(targets.heightPx), 0, 1));
-  commands.setScissor(0, all);
+  commands.setViewport(0,
+                       vk::Viewport(0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1));
+  commands.setScissor(0, info.renderArea);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, nullptr);
+}
+
+void ScenePass::drawDepthAtCentres(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
+                                   const Targets& targets, const ChunkPools& pools, const DrawLists& lists,
+                                   uint32_t count) const {
+  const Usage copied = usageDiscarded(vk::PipelineStageFlagBits2::eTransfer);
+  const std::array barriers{imageBarrier(targets.depth, copied, usageDepthTarget())};
+  recordBarriers(commands, barriers);
+  vk::RenderingAttachmentInfo depth;
+  depth.setImageView(*targets.depth.view).setImageLayout(vk::ImageLayout::eDepthAttachmentOptimal);
+  depth.setLoadOp(vk::AttachmentLoadOp::eClear);
+  depth.setClearValue(vk::ClearDepthStencilValue(static_cast<float>(EYE_CLEAR_DEPTH), 0));
+  vk::RenderingInfo info;
+  info.setRenderArea({{0, 0}, {static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx)}});
+  info.setLayerCount(1).setPDepthAttachment(&depth);
+  beginWith(commands, info);
+  drawWith(depthAtCentres_, commands, gpu, pools, lists.draws(), lists.commands(), 0, count);
+  end(commands);
 }
 
 void ScenePass::drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,

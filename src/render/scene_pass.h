@@ -5,33 +5,46 @@
 #include "render/chunk_pools.h"
 #include "render/draw_lists.h"
 #include "render/haze_width.h"
+#include "render/picture_quality.h"
 #include "render/sky_dome.h"
 #include "render/star_field.h"
 #include "render/targets.h"
 
 namespace eye {
 
+struct SceneOptions {
+  vk::Format colourFormat = vk::Format::eUndefined;
+  vk::SampleCountFlagBits samples = vk::SampleCountFlagBits::e1;
+  TextureFilter filter = TextureFilter::device;
+  bool withTints = false;         // drawTinted may be called
+  std::optional<SceneBend> bend;  // of the terrain, tinted excepted
+};
+
+// What `device` means there.
+TextureFilter filterOn(const GpuDevice& gpu, TextureFilter filter);
+
 class ScenePass {
  public:
   // Throws vk::SystemError. `cache` gets what the driver compiles.
-  // `withTints`: drawTinted may be called.
-  // `bend`: of the terrain, tinted excepted.
-  ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk::Format colourFormat, bool withTints,
-            const std::optional<SceneBend>& bend);
+  ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const SceneOptions& options);
 
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
   // What drawSky draws: the sky by dome or by pixel, and which stars.
   void placeSky(const FrameInput& input, bool byPixel);
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
-  // One render pass, or more that go on with what the first has drawn, or draw it over: begin, draw, end.
-  // `background`: a flat colour instead of the sky. Colour and depth are left as targets.
-  enum class Pass { first, goesOn, over };
+  // One render pass, the whole, or a first and one that goes on with what that has drawn, or draw it over: begin, draw,
+  // end. `background`: a flat colour instead of the sky. Colour and depth are left as targets, but after the first of
+  // several passes the colour of a picture with several samples a pixel is still in its samples.
+  enum class Pass { whole, first, goesOn, over };
   void begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass,
              const std::optional<glm::vec3>& background) const;
   // Indirect commands `first` to `first + count - 1`; their firstInstance is the DrawData's index.
   void drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
                    const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first, uint32_t count) const;
+  // The depth at the pixels' centres into targets.depth, of pictures with several samples a pixel: all by itself.
+  void drawDepthAtCentres(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const Targets& targets,
+                          const ChunkPools& pools, const DrawLists& lists, uint32_t count) const;
   // As drawTerrain, both faces, in the tints that the draws' records bring, see TintLists.
   void drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
                   const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t count) const;
@@ -40,6 +53,7 @@ class ScenePass {
   void end(const vk::raii::CommandBuffer& commands) const { commands.endRendering(); }
 
  private:
+  void beginWith(const vk::raii::CommandBuffer& commands, const vk::RenderingInfo& info) const;
   void drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
                 const ChunkPools& pools, const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first,
                 uint32_t count) const;
@@ -53,7 +67,7 @@ class ScenePass {
   vk::raii::DescriptorSet set_{nullptr};
   vk::raii::PipelineLayout layout_{nullptr};
   vk::raii::Pipeline terrain_{nullptr}, wide_{nullptr}, tinted_{nullptr}, sky_{nullptr}, domeSky_{nullptr},
-      sun_{nullptr}, star_{nullptr};
+      sun_{nullptr}, star_{nullptr}, depthAtCentres_{nullptr};
 };
 
 }  // namespace eye

@@ -2,7 +2,8 @@
 
 namespace eye {
 
-Targets createTargets(const GpuDevice& gpu, int widthPx, int heightPx, vk::Format colourFormat) {
+Targets createTargets(const GpuDevice& gpu, int widthPx, int heightPx, vk::Format colourFormat,
+                      vk::SampleCountFlagBits samples) {
   using Use = vk::ImageUsageFlagBits;
   Targets made;
   made.widthPx = widthPx;
@@ -17,6 +18,15 @@ Targets createTargets(const GpuDevice& gpu, int widthPx, int heightPx, vk::Forma
   spec.usage = Use::eDepthStencilAttachment | Use::eTransferSrc;
   spec.aspect = vk::ImageAspectFlagBits::eDepth;
   made.depth = createImage(gpu, spec);
+  if (samples != vk::SampleCountFlagBits::e1) {
+    spec.samples = samples;
+    spec.usage = Use::eDepthStencilAttachment | Use::eSampled;
+    made.depthSamples = createImage(gpu, spec);
+    spec.format = colourFormat;
+    spec.usage = Use::eColorAttachment;
+    spec.aspect = vk::ImageAspectFlagBits::eColor;
+    made.colourSamples = createImage(gpu, spec);
+  }
   const vk::DeviceSize bytes = vk::DeviceSize{4} * static_cast<uint32_t>(widthPx) * static_cast<uint32_t>(heightPx);
   made.colourBack = createBuffer(gpu, bytes, vk::BufferUsageFlagBits::eTransferDst, MemoryUse::readBack);
   made.depthBack = createBuffer(gpu, bytes, vk::BufferUsageFlagBits::eTransferDst, MemoryUse::readBack);

@@ -55,6 +55,7 @@ Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
     input.tint = Tint::level;
     input.showDepthMap = true;
   }
+  input.readDepth = options.samples > 1;
   if (drawn) drawn = renderer.drawFrame(input);
   renderer.release(*gpu);
   if (!drawn) return tl::unexpected(drawn.error());

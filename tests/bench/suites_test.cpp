@@ -1,4 +1,5 @@
 // Every suite from its start to its report, over a small database.
+#include <map>
 #include <set>
 
 #include <spdlog/spdlog.h>
@@ -178,6 +179,58 @@ TEST_CASE("Suite panorama: every method's shares and metrics, and the published 
   CHECK(report->rows.back()["camera"] == "lower_regression");
   CHECK(report->tables.size() == 3);
   CHECK(report->plots.size() == 2);
+}
+
+TEST_CASE("Suite pareto: each axis with time and error, the default on the front, and the floor") {
+  const auto report = quickly(runParetoSuite);
+  if (!report) return;
+  requireKeys(report->summary, {"default_on_front", "floor_ratio", "truth"});
+  CHECK(report->summary["default_on_front"].is_boolean());
+  CHECK(report->summary["floor_ratio"] > 1);
+  std::map<double, nlohmann::ordered_json> byTolerance;
+  std::set<std::string> samplers, cullings, sizes;
+  int defaults = 0;
+  for (const auto& row : report->rows) {
+    requireKeys(row, {"sse", "culling", "depth_map", "sampler", "samples", "size", "cpu_ms", "wall_ms", "triangles",
+                      "explained", "distance_p99", "psnr_db", "ssim", "skyline_px", "on_front"});
+    CHECK(row["missing_chunks"] == 0);
+    CHECK(row["cpu_ms"] > 0);
+    CHECK(row["psnr_db"] > 15);
+    CHECK(row["explained"] > 0.5);
+    samplers.insert(row["sampler"]);
+    cullings.insert(row["culling"]);
+    sizes.insert(row["size"]);
+    defaults += row["is_default"].get<bool>();
+    if (row["culling"] == "dynamic" && row["depth_map"] == "auto" && row["samples"] == 1 && row["size"] == "800x600" &&
+        row["sampler"] == report->rows[0]["sampler"])
+      byTolerance[row["sse"]] = row;
+  }
+  CHECK(defaults == 1);
+  CHECK(samplers.size() == 3);
+  CHECK(cullings == std::set<std::string>{"none", "frustum", "dynamic"});
+  CHECK(sizes == std::set<std::string>{"800x600", "1280x720"});
+  REQUIRE(byTolerance.size() == 7);
+  // Sixteen pixels against a quarter of one.
+  const auto &coarse = byTolerance.at(16), &fine = byTolerance.at(0.25);
+  CHECK(coarse["triangles"] < fine["triangles"]);
+  CHECK(coarse["distance_p99"] > fine["distance_p99"]);
+  CHECK(coarse["explained"] < fine["explained"]);
+  CHECK(coarse["psnr_db"] < fine["psnr_db"]);
+  CHECK(fine["explained"] > 0.999);
+  CHECK(report->plots.size() == 4);
+}
+
+TEST_CASE("Suite floor: a frame has more triangles than its floor and takes longer") {
+  const auto report = quickly(runFloorSuite);
+  if (!report) return;
+  CHECK(report->summary["floor_ratio"] > 1);
+  CHECK(report->rows.size() == 3);
+  for (const auto& row : report->rows) {
+    CHECK(row["visible"] > 0);
+    CHECK(row["visible"] < row["submitted"]);
+    CHECK(row["cpu_ms"]["floor"] > row["cpu_ms"]["bare_terrain"]);
+    CHECK(row["differing_px"] < 800 * 600 / 1000);
+  }
 }
 
 TEST_CASE("A suite over no database says so") {

@@ -65,6 +65,8 @@ size_t differing(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b)
 TEST_CASE("occlusion culling changes no pixel, and the GPU culls as its CPU mirror") {
   RendererOptions pyramidBy = options();
   pyramidBy.depthPyramid = GENERATE(DepthPyramidBy::compute, DepthPyramidBy::host);
+  pyramidBy.samples = GENERATE(1, 4);
+  INFO(pyramidBy.samples << " samples a pixel");
   const auto renderer = makeRenderer(pyramidBy);
   if (!renderer) return;
   const std::vector<ChunkDraw> draws = mountains(*renderer, 9, ecefFromGeodetic({49, 20, 2500}));

@@ -12,7 +12,7 @@
 #include "link/track_file.h"
 #include "system/live_run.h"
 #include "system/program.h"
-#include "system/wgs84.h"
+#include "truth/wgs84.h"
 
 namespace eye::truth {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "system/program.h"
 #include "system/rasters.h"
-#include "system/wgs84.h"
+#include "truth/wgs84.h"
 
 namespace eye::truth {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "system/program.h"
 #include "system/rasters.h"
-#include "system/ray_caster.h"
-#include "system/truth_metric.h"
+#include "truth/ray_caster.h"
+#include "truth/truth_metric.h"
 
 namespace eye::truth {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "system/height_grid.h"
+#include "truth/height_grid.h"
 
 namespace eye::truth {
 

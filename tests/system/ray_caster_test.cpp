@@ -1,5 +1,5 @@
 // The ray caster against what can be worked out without it.
-#include "system/ray_caster.h"
+#include "truth/ray_caster.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

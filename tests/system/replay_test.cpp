@@ -11,7 +11,7 @@
 
 #include "system/live_run.h"
 #include "system/program.h"
-#include "system/wgs84.h"
+#include "truth/wgs84.h"
 
 namespace eye::truth {
 namespace {

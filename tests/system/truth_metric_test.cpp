@@ -1,5 +1,5 @@
 // The metric itself: a perfect map passes, and each kind of fault is counted as what it is.
-#include "system/truth_metric.h"
+#include "truth/truth_metric.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "raster/picture.h"
 #include "system/program.h"
 #include "system/rasters.h"
-#include "system/truth_metric.h"
+#include "truth/truth_metric.h"
 
 namespace eye::truth {
 namespace {

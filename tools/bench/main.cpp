@@ -44,6 +44,11 @@ void declareOptions(CLI::App& app, Arguments& args) {
                  "Summits for the suite panorama (CSV, GeoJSON, GeoNames); may be given again; else the terrain's own")
       ->type_name("FILE")
       ->allow_extra_args(false);
+  app.add_option(
+         "--elevation", args.options.elevation,
+         "What the terrain was baked from, the truth of the suite pareto; may be given again; else its finest meshes")
+      ->type_name("SRC")
+      ->allow_extra_args(false);
   app.add_flag("--quick", args.options.quick, "Fewer views and frames: seconds a suite, to see that it works");
   app.add_option("--device", args.options.device, "Part of a Vulkan device's name; eyepoint lists them")
       ->type_name("NAME");
@@ -106,6 +111,8 @@ Result<void> measure(const Arguments& args) {
     fmt::print("{}\n", suite.title);
     for (const ReportTarget& target : suite.targets)
       fmt::print("  {} {}: {}\n", target.isReached ? "reached" : "missed ", target.what, target.measured);
+    for (const ReportTable& table : suite.tables)
+      if (table.isPrinted) fmt::print("\n{}", tableText(table));
   }
   fmt::print("{0}/report.html\n{0}/report.json\n", args.out);
   return {};

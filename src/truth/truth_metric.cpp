@@ -1,4 +1,4 @@
-#include "system/truth_metric.h"
+#include "truth/truth_metric.h"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "system/height_grid.h"
-#include "system/wgs84.h"
+#include "truth/height_grid.h"
+#include "truth/wgs84.h"
 
 namespace eye::truth {
 

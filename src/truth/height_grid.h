@@ -18,6 +18,8 @@ struct GridShape {
 class HeightGrid {
  public:
   HeightGrid(const GridShape& shape, const std::function<double(double latDeg, double lonDeg)>& heightM);
+  // The same by row and column, a row after the other.
+  static HeightGrid fromPosts(const GridShape& shape, const std::function<double(int row, int column)>& heightM);
   // Every NxxEyyy.hgt of a folder, which must fill a rectangle. Posts that two files share with different values are
   // averaged. Returns an empty grid (rows == 0) where there is none.
   static HeightGrid fromHgtFolder(const std::string& folder);

@@ -1,4 +1,4 @@
-#include "system/ray_caster.h"
+#include "truth/ray_caster.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "system/height_grid.h"
+#include "truth/height_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,15 +36,19 @@ Tile readHgt(const std::filesystem::path& file, int& side) {
 
 }  // namespace
 
-HeightGrid::HeightGrid(const GridShape& shape, const std::function<double(double, double)>& heightM) : shape_(shape) {
-  posts_.resize(static_cast<size_t>(shape.rows) * static_cast<size_t>(shape.columns));
-  for (int r = 0; r < shape.rows; ++r) {
-    for (int c = 0; c < shape.columns; ++c) {
-      posts_[index(r, c)] =
-          static_cast<float>(heightM(shape.southDeg + r * shape.stepDeg, shape.westDeg + c * shape.stepDeg));
-    }
-  }
-  buildPyramid();
+HeightGrid::HeightGrid(const GridShape& shape, const std::function<double(double, double)>& heightM)
+    : HeightGrid(fromPosts(shape, [&](int row, int column) {
+        return heightM(shape.southDeg + row * shape.stepDeg, shape.westDeg + column * shape.stepDeg);
+      })) {}
+
+HeightGrid HeightGrid::fromPosts(const GridShape& shape, const std::function<double(int, int)>& heightM) {
+  HeightGrid grid;
+  grid.shape_ = shape;
+  grid.posts_.resize(static_cast<size_t>(shape.rows) * static_cast<size_t>(shape.columns));
+  for (int r = 0; r < shape.rows; ++r)
+    for (int c = 0; c < shape.columns; ++c) grid.posts_[grid.index(r, c)] = static_cast<float>(heightM(r, c));
+  grid.buildPyramid();
+  return grid;
 }
 
 HeightGrid HeightGrid::fromHgtFolder(const std::string& folder) {

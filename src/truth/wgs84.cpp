@@ -1,4 +1,4 @@
-#include "system/wgs84.h"
+#include "truth/wgs84.h"
 
 #include <cmath>
 

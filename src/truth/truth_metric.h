@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "system/ray_caster.h"
+#include "truth/ray_caster.h"
 
 namespace eye::truth {
 
