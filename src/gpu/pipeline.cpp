@@ -42,7 +42,8 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
   target.setSrcAlphaBlendFactor(vk::BlendFactor::eZero).setDstAlphaBlendFactor(vk::BlendFactor::eOne);
   vk::PipelineColorBlendStateCreateInfo blend;
   blend.setAttachments(target);
-  const std::array dynamicStates{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  std::vector dynamicStates{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  if (spec.cull != vk::CullModeFlagBits::eNone) dynamicStates.push_back(vk::DynamicState::eFrontFace);
   vk::PipelineDynamicStateCreateInfo dynamic;
   dynamic.setDynamicStates(dynamicStates);
   vk::PipelineRenderingCreateInfo rendering;

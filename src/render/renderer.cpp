@@ -171,6 +171,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& input) {
     impl.lists->reserve(*impl.gpu, input.draws.size());
     impl.scene->frame() = frameData(input);
     impl.scene->placeStars(input);
+    impl.scene->faceAs(input.view.frustum);
     const DrawCounts counts = impl.lists->write(input.draws, input.view.eyeEcefM, impl.options.textureSize);
     if (impl.debug) impl.debug->prepare(*impl.gpu, input, *impl.pools, *impl.cullLists, impl.options.textureSize);
     const bool culls = impl.prepareCulling(input);

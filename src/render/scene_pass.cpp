@@ -175,6 +175,7 @@ void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& ta
   commands.setViewport(
       0, vk::Viewport(0, 0, static_cast<float>(targets.widthPx), static_cast<float>(targets.heightPx), 0, 1));
   commands.setScissor(0, all);
+  commands.setFrontFace(flips_ ? vk::FrontFace::eClockwise : vk::FrontFace::eCounterClockwise);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, nullptr);
 }
 

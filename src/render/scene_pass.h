@@ -19,6 +19,11 @@ class ScenePass {
 
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
   void placeStars(const FrameInput& input);  // those that drawSky draws
+  // In a mirrored view what is counterclockwise as seen from outside is clockwise on the screen; mirrored both ways it
+  // is not.
+  void faceAs(const Frustum& frustum) {
+    flips_ = (frustum.tanLeft > frustum.tanRight) != (frustum.tanBottom > frustum.tanTop);
+  }
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
   // One render pass, or more that go on with what the first has drawn, or draw it over: begin, draw, end.
@@ -41,6 +46,7 @@ class ScenePass {
                 const ChunkPools& pools, const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first,
                 uint32_t count) const;
 
+  bool flips_ = false;
   GpuBuffer frame_, starBuffer_;
   std::vector<StarInstance> placedStars_;
   vk::raii::Sampler sampler_{nullptr};
