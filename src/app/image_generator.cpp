@@ -143,14 +143,16 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   return made;
 }
 
-// What the user says of the frustum counts before what the host does.
+// What the user says of the frustum and of mirrors counts before what the host does.
 View ImageGenerator::currentView(const Pose& pose, const ViewEdges& hosts) const {
   const int width = renderer_->widthPx(), height = renderer_->heightPx();
   const Frustum frustum = options_.frustumDeg
                               ? offAxisFrustum((*options_.frustumDeg)[0], (*options_.frustumDeg)[1],
                                                (*options_.frustumDeg)[2], (*options_.frustumDeg)[3], options_.nearM)
                               : frustumWith(symmetricFrustum(options_.fovDeg, width, height, options_.nearM), hosts);
-  return makeView(pose, frustum, width, height);
+  ViewEdges edges = hosts;
+  if (options_.mirrors) edges.mirrorsAcross = (*options_.mirrors)[0], edges.mirrorsUpright = (*options_.mirrors)[1];
+  return makeView(pose, mirrored(frustum, edges), width, height);
 }
 
 Lighting ImageGenerator::currentLighting(const SourceSample& host) const {

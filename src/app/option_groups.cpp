@@ -51,6 +51,12 @@ void addView(CLI::App& app, Options& o) {
          "Where this channel looks from the aircraft's nose: heading,pitch,roll, degrees")
       ->type_name("H,P,R")
       ->group(group);
+  app.add_option_function<std::string>(
+         "--mirror", [&o](const std::string& t) { setMirror(o, t); },
+         "The picture as in a mirror: across (h), upside down (v), both (hv); default: as the host wants it")
+      ->type_name("none/h/v/hv")
+      ->check(CLI::IsMember({"none", "h", "v", "hv"}))
+      ->group(group);
   app.add_option("--near", o.nearM, "Near plane, metres; default 1")
       ->type_name("M")
       ->check(within(0.01, 1000.0))

@@ -137,6 +137,10 @@ void setFrustum(Options& options, const std::string& text) {
   options.frustumDeg = std::array<double, 4>{(*n)[0], (*n)[1], (*n)[2], (*n)[3]};
 }
 
+void setMirror(Options& options, const std::string& text) {
+  options.mirrors = std::array<bool, 2>{text.starts_with('h'), text.ends_with('v')};
+}
+
 void setViewOffset(Options& options, const std::string& text) {
   const auto n = splitNumbers(text, ',', 3);
   if (!n || std::abs((*n)[0]) > 360 || std::abs((*n)[1]) > 90 || std::abs((*n)[2]) > 360)

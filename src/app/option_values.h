@@ -20,6 +20,7 @@ void setSize(Options& options, const std::string& text);
 void setDepthMap(Options& options, const std::string& text);
 void setDebugView(Options& options, const std::string& text);
 void setFrustum(Options& options, const std::string& text);
+void setMirror(Options& options, const std::string& text);
 void setViewOffset(Options& options, const std::string& text);
 void setRate(Options& options, const std::string& text);
 void setHostDelay(Options& options, const std::string& text);

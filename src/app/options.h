@@ -31,6 +31,7 @@ struct Options {
   int widthPx = 800, heightPx = 600;
   double fovDeg = 60;
   std::optional<std::array<double, 4>> frustumDeg;     // left, right, bottom, top
+  std::optional<std::array<bool, 2>> mirrors;          // left for right, up for down; unset: as the host wants it
   std::optional<std::array<double, 3>> viewOffsetDeg;  // heading, pitch, roll of the view against the aircraft
   double nearM = 1;
 

@@ -47,7 +47,7 @@ Mat3d ecefFromEnu(double latDeg, double lonDeg) {
   const SinCos lat = sinCosDeg(latDeg), lon = sinCosDeg(lonDeg);
   const Vec3d east(-lon.sin, lon.cos, 0.0);
   const Vec3d north(-lat.sin * lon.cos, -lat.sin * lon.sin, lat.cos);
-  return Mat3d(east, north, upAt(latDeg, lonDeg));
+  return Mat3d(east, north, Vec3d(lat.cos * lon.cos, lat.cos * lon.sin, lat.sin));
 }
 
 Mat3d enuFromBody(double headingDeg, double pitchDeg, double rollDeg) {

@@ -26,7 +26,7 @@ View makeView(const Pose& pose, const Frustum& frustum, int widthPx, int heightP
 double pixelsPerRadian(const View& view) {
   // The two agree for square pixels; the finer one holds where a host asks for a frustum of another shape.
   const Frustum& f = view.frustum;
-  return std::max(view.widthPx / (f.tanRight - f.tanLeft), view.heightPx / (f.tanTop - f.tanBottom));
+  return std::max(view.widthPx / std::abs(f.tanRight - f.tanLeft), view.heightPx / std::abs(f.tanTop - f.tanBottom));
 }
 
 Vec3d rayThroughPixel(const Frustum& frustum, int widthPx, int heightPx, int column, int row) {
@@ -38,8 +38,10 @@ Vec3d rayThroughPixel(const Frustum& frustum, int widthPx, int heightPx, int col
 
 FrustumPlanes frustumPlanes(const View& view) {
   const Frustum& f = view.frustum;
-  const std::array<Vec3d, 5> normalsEye{Vec3d(1, 0, -f.tanLeft), Vec3d(-1, 0, f.tanRight), Vec3d(0, -1, -f.tanBottom),
-                                        Vec3d(0, 1, f.tanTop), Vec3d(0, 0, 1)};
+  const auto [left, right] = std::minmax(f.tanLeft, f.tanRight);
+  const auto [bottom, top] = std::minmax(f.tanBottom, f.tanTop);
+  const std::array<Vec3d, 5> normalsEye{Vec3d(1, 0, -left), Vec3d(-1, 0, right), Vec3d(0, -1, -bottom),
+                                        Vec3d(0, 1, top), Vec3d(0, 0, 1)};
   const Mat3d ecefFromEyeAxes = glm::transpose(view.eyeFromEcef);
   FrustumPlanes planes{};
   for (size_t i = 0; i < normalsEye.size(); ++i)

@@ -47,7 +47,8 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
   vk::PipelineColorBlendStateCreateInfo blend;
   const bool hasColour = spec.colourFormat != vk::Format::eUndefined;
   if (hasColour) blend.setAttachments(target);
-  const std::array dynamicStates{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  std::vector dynamicStates{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  if (spec.cull != vk::CullModeFlagBits::eNone) dynamicStates.push_back(vk::DynamicState::eFrontFace);
   vk::PipelineDynamicStateCreateInfo dynamic;
   dynamic.setDynamicStates(dynamicStates);
   vk::PipelineRenderingCreateInfo rendering;

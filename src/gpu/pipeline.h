@@ -1,5 +1,5 @@
-// Pipelines: one description, one call. Graphics pipelines are for dynamic rendering; viewport and scissor are
-// dynamic.
+// Pipelines: one description, one call. Graphics pipelines are for dynamic rendering; viewport, scissor and, where
+// faces are culled, the front face are dynamic.
 #pragma once
 
 #include <span>
@@ -27,7 +27,7 @@ struct PipelineSpec {
   std::vector<uint32_t> vertexConstants{};  // the vertex shader's specialization constants 0, 1, 2 ..., as bits
   bool isStrip = false;                     // triangle strips instead of single triangles
   bool adds = false;                        // colours are added to what is there
-  vk::CullModeFlags cull = vk::CullModeFlagBits::eNone;  // counterclockwise as seen on the screen is the front
+  vk::CullModeFlags cull = vk::CullModeFlagBits::eNone;
 };
 
 vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const PipelineSpec& spec);

@@ -1,5 +1,7 @@
 #include "link/cigi_host.h"
 
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 
 #include "link/angles.h"
@@ -29,6 +31,7 @@ std::vector<std::byte> hostMessage(Version version, const HostFrame& frame) {
       EntityPlace{Clamp::none, 0, frame.pose.rollDeg, frame.pose.pitchDeg, frame.pose.headingDeg, frame.pose.position};
   Builder builder(Format{version, std::endian::native}, control);
   EYE_CHECK(builder.add(entity));
+  for (const Packet& request : frame.requests) EYE_CHECK(builder.add(request));
   return builder.take();
 }
 
@@ -53,20 +56,25 @@ bool isFromHost(std::span<const std::byte> datagram) {
   return isMajor3 ? std::to_integer<int>(datagram[0]) == 1 : std::to_integer<int>(datagram[2]) == 0;
 }
 
-ReplyListener::ReplyListener(const UdpSocket& socket)
-    : socket_(socket), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+ReplyListener::ReplyListener(const UdpSocket& socket, size_t channels, OnMessage onMessage)
+    : socket_(socket),
+      onMessage_(std::move(onMessage)),
+      channels_(channels),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void ReplyListener::run(const std::stop_token& stop) {
   nameThread("replies");
   std::vector<std::byte> buffer(kMaxDatagramBytes);
   while (!stop.stop_requested()) {
     if (!socket_.wait(kPollMs)) continue;
-    if (const auto datagram = socket_.receive(buffer)) take(*datagram);
+    Peer sender;
+    if (const auto datagram = socket_.receiveFrom(buffer, sender)) take(*datagram, sender);
   }
 }
 
-void ReplyListener::take(std::span<const std::byte> datagram) {
+void ReplyListener::take(std::span<const std::byte> datagram, const Peer& sender) {
   const auto message = parse(datagram);
+  if (message && onMessage_) onMessage_(sender, *message);
   const std::lock_guard lock(mutex_);
   const auto* start =
       !message || message->packets.empty() ? nullptr : std::get_if<StartOfFrame>(&message->packets.front());
@@ -77,6 +85,8 @@ void ReplyListener::take(std::span<const std::byte> datagram) {
   heard_.overframings += start->overframing ? 1u : 0u;
   heard_.pagings += start->paging ? 1u : 0u;
   igFrame_ = start->igFrame;
+  if (start->hostFrame && channels_.heard(sender, *start->hostFrame))
+    spdlog::info("channel {} is back", toText(sender));
   for (const Packet& packet : message->packets) {
     const bool isHeight =
         std::holds_alternative<HeightResponse>(packet) || std::holds_alternative<HeightExtendedResponse>(packet);
@@ -99,6 +109,21 @@ bool ReplyListener::awaitStart(int timeoutMs) {
       came_.wait_for(lock, std::chrono::milliseconds(timeoutMs), [&] { return heard_.starts > awaited_; });
   awaited_ = heard_.starts;
   return came;
+}
+
+bool ReplyListener::awaitChannels(uint32_t hostFrame, int timeoutMs) {
+  std::unique_lock lock(mutex_);
+  return came_.wait_for(lock, std::chrono::milliseconds(timeoutMs), [&] { return channels_.allHave(hostFrame); });
+}
+
+HostChannels ReplyListener::channels() const {
+  const std::lock_guard lock(mutex_);
+  return channels_;
+}
+
+void ReplyListener::giveUp(const Peer& channel) {
+  const std::lock_guard lock(mutex_);
+  channels_.giveUp(channel);
 }
 
 }  // namespace eye::cigi

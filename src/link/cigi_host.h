@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "link/cigi.h"
+#include "link/host_channels.h"
 #include "link/udp_socket.h"
 
 namespace eye::cigi {
@@ -18,6 +19,7 @@ struct HostFrame {
   uint32_t igFrame = 0;  // the last that has come in
   double timeS = 0;      // of the host's clock
   Pose pose;
+  std::vector<Packet> requests = {};  // what it asks; a handful
 };
 std::vector<std::byte> hostMessage(Version version, const HostFrame& frame);
 
@@ -35,23 +37,33 @@ struct HeardReplies {
   StartOfFrame newest;
 };
 
-// Listens on a connected socket until it is destroyed, which takes at most some 20 ms. The socket must live longer.
+// Listens on a socket from connectTo until it is destroyed, which takes at most some 20 ms. The socket must live
+// longer.
 class ReplyListener {
  public:
-  explicit ReplyListener(const UdpSocket& socket);
+  // `onMessage` (may be empty) gets what is understood, on the listener's thread. `channels`: how many are expected.
+  using OnMessage = std::function<void(const Peer& sender, const Message& message)>;
+  explicit ReplyListener(const UdpSocket& socket, size_t channels = 1, OnMessage onMessage = {});
   HeardReplies heard() const;
   uint32_t igFrame() const { return igFrame_; }  // the newest that has come in
   // Waits for a Start of Frame that came after the last call; false after the time.
   bool awaitStart(int timeoutMs);
 
+  // Waits until all channels have shown the host's frame, but for those that were given up; false after the time.
+  bool awaitChannels(uint32_t hostFrame, int timeoutMs);
+  HostChannels channels() const;
+  void giveUp(const Peer& channel);  // until it is heard again
+
  private:
   void run(const std::stop_token& stop);
-  void take(std::span<const std::byte> datagram);
+  void take(std::span<const std::byte> datagram, const Peer& sender);
 
   const UdpSocket& socket_;
+  const OnMessage onMessage_;
   mutable std::mutex mutex_;
   std::condition_variable came_;
   HeardReplies heard_;
+  HostChannels channels_;
   uint64_t awaited_ = 0;  // starts that awaitStart has seen
   std::atomic<uint32_t> igFrame_ = 0;
   std::jthread thread_;  // last: it uses the others

@@ -15,6 +15,7 @@ void Replies::heard(const Peer& host, const Format& format, const IgControl& con
     answers_.clear();
     wantedDatabase_ = 0;
     loaded_ = false;
+    firstHostFrame_ = control.hostFrame;
   }
   host_ = host;
   heardNs_ = nowNs;
@@ -40,14 +41,17 @@ int8_t Replies::databaseStatus(const FrameReport& report) {
   return static_cast<int8_t>(loaded_ ? wantedDatabase_ : -wantedDatabase_);
 }
 
-std::optional<Replies::Reply> Replies::frame(const FrameReport& report, int64_t nowNs) {
+std::optional<Replies::Reply> Replies::frame(const FrameReport& report, std::optional<uint32_t> shownHostFrame,
+                                             int64_t nowNs) {
   const std::lock_guard lock(mutex_);
   StartOfFrame start;
   start.igFrame = igFrame_++;
   start.databaseNumber = databaseStatus(report);
   start.mode = control_.mode;
   start.ticks = static_cast<uint32_t>(nowNs / 10'000);
-  start.hostFrame = control_.hostFrame;
+  // What another host's frame shows is nothing to this one.
+  const bool isThisHosts = shownHostFrame && *shownHostFrame - firstHostFrame_ <= control_.hostFrame - firstHostFrame_;
+  start.hostFrame = isThisHosts ? *shownHostFrame : 0;
   start.overframing = report.overBudget;
   start.paging = report.pagingBehind;
   const bool speaks = host_ && nowNs - heardNs_ <= kRepliesEndNs;

@@ -31,8 +31,9 @@ class Replies {
     std::vector<std::byte> message;
   };
   // Render thread, after each frame. Nothing where there is nobody to send to: no host has spoken, or it is silent and
-  // no receiver is fixed.
-  std::optional<Reply> frame(const FrameReport& report, int64_t nowNs);
+  // no receiver is fixed. `shownHostFrame`: the host's frame that this one shows, by which a host that waits for all of
+  // its channels knows that none has passed it over; absent before the first.
+  std::optional<Reply> frame(const FrameReport& report, std::optional<uint32_t> shownHostFrame, int64_t nowNs);
 
  private:
   int8_t databaseStatus(const FrameReport& report);
@@ -44,7 +45,8 @@ class Replies {
   int64_t heardNs_ = 0;
   Format format_;
   IgControl control_;
-  int8_t wantedDatabase_ = 0;  // 0: the host has not asked for one
+  uint32_t firstHostFrame_ = 0;  // of this host
+  int8_t wantedDatabase_ = 0;    // 0: the host has not asked for one
   bool loaded_ = false;
   uint32_t igFrame_ = 0;
   std::deque<Packet> answers_;

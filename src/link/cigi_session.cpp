@@ -132,7 +132,8 @@ void Session::take(const ViewDefinition& definition, const std::string& name) {
     return;
   }
   groupId_ = definition.groupId;
-  if (definition.mirror != Mirror::none) remark(name, Remark::mirror, "a mirrored view is drawn as it is, unmirrored");
+  edges_.mirrorsAcross = definition.mirror == Mirror::horizontal || definition.mirror == Mirror::both;
+  edges_.mirrorsUpright = definition.mirror == Mirror::vertical || definition.mirror == Mirror::both;
   if (definition.orthographic) {
     remark(name, Remark::orthographic, "an orthographic view is not drawn; the channel keeps its own frustum");
     return;

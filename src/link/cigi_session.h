@@ -63,7 +63,7 @@ class Session {
   std::optional<Placed> entityPlace(uint16_t id, int64_t nowNs) const;
   std::optional<Vec3d> ecefOf(const Point& point, uint16_t entityId, int64_t nowNs) const;
   // What a host is told once in the log.
-  enum class Remark { standby, tooMany, clamp, otherView, mirror, orthographic };
+  enum class Remark { standby, tooMany, clamp, otherView, orthographic };
   void remark(const std::string& name, Remark remark, const std::string& text);
 
   const uint16_t viewId_;

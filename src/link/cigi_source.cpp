@@ -8,6 +8,7 @@
 #include "link/host_url.h"
 #include "link/link_thread.h"
 #include "link/live_sources.h"
+#include "link/udp_group.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -17,17 +18,21 @@ struct CigiOptions {
   uint16_t viewId = 0;
   std::optional<Peer> reply;
   bool silent = false;  // nothing is sent at all: another channel answers
+  bool answers = true;  // questions about the ground; else Start of Frame alone
   std::optional<int8_t> databaseNumber;
   AllowList allowed;
 };
 
 class CigiSource final : public StateSource, private LinkProtocol {
  public:
-  CigiSource(UdpSocket socket, const CigiOptions& options, const OpenProbe& openProbe, const std::string& url)
+  CigiSource(UdpSocket socket, std::optional<UdpSocket> replySocket, const CigiOptions& options,
+             const OpenProbe& openProbe, const std::string& url)
       : url_(url),
         socket_(std::move(socket)),
+        replySocket_(std::move(replySocket)),
         allowed_(options.allowed),
         silent_(options.silent),
+        answers_(options.answers && !options.silent),
         session_(options.viewId),
         replies_(options.reply, options.databaseNumber),
         desk_(replies_, openProbe, url),
@@ -39,6 +44,7 @@ class CigiSource final : public StateSource, private LinkProtocol {
     sample.live = true;
     sample.counts = newest.counts;
     if (!newest.state) return sample;
+    shownHostFrame_ = newest.state->hostFrame;
     const cigi::Snapshot& state = *newest.state;
     const int64_t nowNs = monotonicNs();
     sample.arrivedNs = state.arrivedNs;
@@ -56,8 +62,9 @@ class CigiSource final : public StateSource, private LinkProtocol {
 
   void frameDone(const FrameReport& report) override {
     if (silent_) return;
-    const auto reply = replies_.frame(report, monotonicNs());
-    if (reply) (void)socket_.sendTo(reply->message, reply->receiver);  // not sent: the next frame's says the same
+    const auto reply = replies_.frame(report, shownHostFrame_, monotonicNs());
+    const UdpSocket& socket = replySocket_ ? *replySocket_ : socket_;
+    if (reply) (void)socket.sendTo(reply->message, reply->receiver);  // not sent: the next frame's says the same
   }
 
   bool await(int timeoutMs) override { return mailbox_.await(timeoutMs); }
@@ -84,7 +91,7 @@ class CigiSource final : public StateSource, private LinkProtocol {
     session_.take(*message, nowNs, url_);
     replies_.heard(sender, message->format, session_.control(), nowNs);
     auto questions = session_.takeQuestions();
-    if (!silent_) desk_.ask(std::move(questions));
+    if (answers_) desk_.ask(std::move(questions));
     heard_ = true;
     if (message->rejected > 0) return fail(ErrorKind::badData, message->firstRejection);
     return {};
@@ -98,8 +105,10 @@ class CigiSource final : public StateSource, private LinkProtocol {
 
   const std::string url_;
   UdpSocket socket_;
+  const std::optional<UdpSocket> replySocket_;
   const AllowList allowed_;
-  const bool silent_;
+  const bool silent_, answers_;
+  std::optional<uint32_t> shownHostFrame_;  // the render thread's
   HostLock lock_;
   cigi::Session session_;  // these two the link thread's
   bool heard_ = false;
@@ -112,7 +121,7 @@ class CigiSource final : public StateSource, private LinkProtocol {
 }  // namespace
 
 OpenedSource openCigi(const std::string& url, const std::string& rest, const OpenProbe& openProbe) {
-  constexpr const char* kOptions[] = {"reply", "view", "database", "allow", "interface"};
+  constexpr const char* kOptions[] = {"reply", "answers", "view", "database", "allow", "interface"};
   const auto parsed = parseHostUrl(url, rest, kOptions);
   if (!parsed) return tl::unexpected(parsed.error());
 
@@ -136,9 +145,25 @@ OpenedSource openCigi(const std::string& url, const std::string& rest, const Ope
     options.reply = *peer;
   }
 
+  const std::string* const answers = parsed->find("answers");
+  if (answers != nullptr && *answers != "yes" && *answers != "no")
+    return fail(ErrorKind::usage, fmt::format("{}: answers '{}' is neither yes nor no", url, *answers));
+  options.answers = answers == nullptr || *answers == "yes";
+
   auto socket = listenOn(*parsed);
   if (!socket) return tl::unexpected(socket.error());
-  return std::make_unique<CigiSource>(std::move(*socket), options, openProbe, url);
+  // Channels of one group on one machine share the port that hears it: each answers from one of its own, by which the
+  // host tells them apart.
+  std::optional<UdpSocket> replySocket;
+  const auto endpoint = parseEndpoint(parsed->place, kLoopbackAddress, url);
+  if (!endpoint) return tl::unexpected(endpoint.error());
+  const auto place = resolvePeer(*endpoint);
+  if (place && reachOf(place->address) != Reach::one && !options.silent) {
+    auto own = UdpSocket::listenOn({"0.0.0.0", 0});
+    if (!own) return tl::unexpected(own.error());
+    replySocket = std::move(*own);
+  }
+  return std::make_unique<CigiSource>(std::move(*socket), std::move(replySocket), options, openProbe, url);
 }
 
 }  // namespace eye

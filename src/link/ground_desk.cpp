@@ -39,16 +39,16 @@ void GroundDesk::run(const std::stop_token& stop) {
   nameThread("ground");
   const auto probe = openProbe_();
   if (!probe) spdlog::warn("{}: questions about the ground have no answer: {}", name_, probe.error().message);
+  std::deque<GroundQuestion> taken;
   while (true) {
-    GroundQuestion question;
     {
       std::unique_lock lock(mutex_);
       if (!wake_.wait(lock, stop, [this] { return !waiting_.empty(); })) return;
-      question = std::move(waiting_.front());
-      waiting_.pop_front();
+      taken.swap(waiting_);
     }
-    const TraceScope scope("ground question");
-    replies_.answer(answerTo(question, probe ? probe->get() : nullptr));
+    const TraceScope scope("ground questions");
+    for (; !taken.empty() && !stop.stop_requested(); taken.pop_front())
+      replies_.answer(answerTo(taken.front(), probe ? probe->get() : nullptr));
   }
 }
 

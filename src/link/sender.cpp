@@ -61,14 +61,15 @@ uint64_t packetsIn(double durationS, double rateHz) {
 }  // namespace
 
 PacketSource cigiPacketsFromPoses(std::function<Pose(double timeS)> poseAt, double durationS, double rateHz,
-                                  cigi::Version version, std::function<uint32_t()> igFrame) {
+                                  cigi::Version version, std::function<uint32_t()> igFrame, const cigi::AskPlan& plan) {
   const uint64_t count = packetsIn(durationS, rateHz);
   return {count, static_cast<double>(count) / rateHz,
-          [poseAt = std::move(poseAt), igFrame = std::move(igFrame), rateHz, version,
+          [poseAt = std::move(poseAt), igFrame = std::move(igFrame), rateHz, version, plan,
            number = std::make_shared<uint32_t>(0)](uint64_t index) {
             const double timeS = static_cast<double>(index) / rateHz;
             const uint32_t frame = (*number)++;
-            return RecordedPacket{timeS, cigi::hostMessage(version, {frame, igFrame(), frame / rateHz, poseAt(timeS)})};
+            return RecordedPacket{timeS, cigi::hostMessage(version, {frame, igFrame(), frame / rateHz, poseAt(timeS),
+                                                                     cigi::requestsAt(plan, frame)})};
           }};
 }
 
@@ -146,9 +147,9 @@ SendReport sendOnDemand(const DemandedSource& source, const UdpSocket& socket, c
   Departures departures;
   SendReport report;
   uint64_t order = 0;
-  int64_t nextSecondNs = kSecondNs, sentNs = -kSecondNs;  // the first packet waits for nothing
+  int64_t nextSecondNs = kSecondNs, sentNs = -nsOf(source.patienceS);  // the first packet waits for nothing
   const int64_t startNs = monotonicNs();
-  const int64_t leastNs = nsOf(source.leastS);
+  const int64_t leastNs = nsOf(source.leastS), patienceNs = nsOf(source.patienceS);
   bool more = true, isOwed = false;  // owed: demanded, too early
   while (!stop && (more || !departures.empty())) {
     int64_t nowNs = monotonicNs() - startNs;
@@ -170,9 +171,9 @@ SendReport sendOnDemand(const DemandedSource& source, const UdpSocket& socket, c
     else
       isOwed = source.awaitDemand(static_cast<int>((untilNs - nowNs + kNsPerMs - 1) / kNsPerMs)) && more;
     nowNs = monotonicNs() - startNs;
-    if (!more || nowNs - sentNs < (isOwed ? leastNs : kSecondNs)) continue;
+    if (!more || nowNs - sentNs < (isOwed ? leastNs : patienceNs)) continue;
+    auto payload = source.packetAt(static_cast<double>(nowNs) / kNsPerS, isOwed);
     isOwed = false;
-    auto payload = source.packetAt(static_cast<double>(nowNs) / kNsPerS);
     more = payload.has_value();
     if (!more) continue;
     sentNs = nowNs;

@@ -11,6 +11,7 @@
 #include "geo/pose.h"
 #include "link/bad_link.h"
 #include "link/cigi_fields.h"
+#include "link/host_questions.h"
 #include "link/track_file.h"
 #include "link/udp_socket.h"
 
@@ -25,10 +26,11 @@ struct PacketSource {
 
 // native-fdm packets of poses `rateHz` times a second, from 0 to `durationS` inclusive.
 PacketSource packetsFromPoses(std::function<Pose(double timeS)> poseAt, double durationS, double rateHz);
-// CIGI host messages of the same poses; `igFrame` says which of the image generator's frames has come in last. Frame
-// numbers go on from round to round.
+// CIGI host messages of the same poses; `igFrame` says which of the image generator's frames has come in last, and
+// `plan` what is asked of the ground. Frame numbers go on from round to round.
 PacketSource cigiPacketsFromPoses(std::function<Pose(double timeS)> poseAt, double durationS, double rateHz,
-                                  cigi::Version version, std::function<uint32_t()> igFrame);
+                                  cigi::Version version, std::function<uint32_t()> igFrame,
+                                  const cigi::AskPlan& plan = {});
 // Recorded packets, payload and timing unchanged. There must be at least one.
 PacketSource packetsFromRecording(std::vector<RecordedPacket> packets);
 
@@ -55,11 +57,12 @@ SendReport sendPackets(const PacketSource& source, const UdpSocket& socket, cons
                        const std::atomic<bool>& stop, const std::function<void(const SendReport&)>& everySecond);
 
 // Packets on demand: one for each time that `awaitDemand` (which waits so many milliseconds at most) returns true, but
-// `leastS` after the one before, and one a second while it does not. `packetAt` has nothing at the end.
+// `leastS` after the one before, and one each `patienceS` while it does not. `packetAt` has nothing at the end;
+// `demanded` tells it which of the two it is.
 struct DemandedSource {
-  std::function<std::optional<std::vector<std::byte>>(double timeS)> packetAt;
+  std::function<std::optional<std::vector<std::byte>>(double timeS, bool demanded)> packetAt;
   std::function<bool(int timeoutMs)> awaitDemand;
-  double leastS = 0;
+  double leastS = 0, patienceS = 1;
 };
 SendReport sendOnDemand(const DemandedSource& source, const UdpSocket& socket, const SendOptions& options,
                         const std::atomic<bool>& stop, const std::function<void(const SendReport&)>& everySecond);

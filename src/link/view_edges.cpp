@@ -1,6 +1,7 @@
 #include "link/view_edges.h"
 
 #include <cmath>
+#include <utility>
 
 namespace eye {
 
@@ -16,6 +17,13 @@ Frustum frustumWith(const Frustum& own, const ViewEdges& edges) {
   if (top - bottom >= kNarrowest) frustum.tanBottom = bottom, frustum.tanTop = top;
   if (edges.nearM) frustum.nearM = *edges.nearM;
   return frustum;
+}
+
+Frustum mirrored(const Frustum& frustum, const ViewEdges& edges) {
+  Frustum result = frustum;
+  if (edges.mirrorsAcross) std::swap(result.tanLeft, result.tanRight);
+  if (edges.mirrorsUpright) std::swap(result.tanBottom, result.tanTop);
+  return result;
 }
 
 }  // namespace eye

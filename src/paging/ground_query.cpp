@@ -3,61 +3,55 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <queue>
+#include <cmath>
+
+#include <GeographicLib/Math.hpp>
 
 namespace eye {
 namespace {
 
-constexpr size_t kMeshBudgetBytes = 32 << 20;
-constexpr size_t kMostMetas = 16'384;  // some 5 MiB
-
-// Where a line meets a triangle's plane (after Möller and Trumbore 1997).
-struct Crossing {
-  double along = 0;   // 0 at the line's first point, 1 at its second
-  double inside = 0;  // the least of the three corners' shares: negative outside the triangle
+// A line of sight, with what its tests against bounds share.
+struct Sight {
+  Vec3d from, way;
+  double perLengthSquared = 0;
 };
 
-std::optional<Crossing> crossingOf(const Vec3d& from, const Vec3d& way, const Vec3d& a, const Vec3d& b,
-                                   const Vec3d& c) {
-  const Vec3d ab = b - a, ac = c - a, p = glm::cross(way, ac);
-  const double determinant = glm::dot(ab, p);
-  if (determinant == 0) return std::nullopt;
-  const Vec3d fromA = from - a, q = glm::cross(fromA, ab);
-  const double v = glm::dot(fromA, p) / determinant, w = glm::dot(way, q) / determinant;
-  return Crossing{glm::dot(ac, q) / determinant, std::min({1 - v - w, v, w})};
+// The foot of a plumb line, on the ellipsoid, and its way up: half the time of asking for each by itself.
+struct Plumb {
+  Vec3d footEcefM, up;
+};
+Plumb plumbAt(double latDeg, double lonDeg) {
+  constexpr double kEccentricitySquared = kFlattening * (2 - kFlattening);
+  double sinLat = 0, cosLat = 0, sinLon = 0, cosLon = 0;
+  GeographicLib::Math::sincosd(latDeg, sinLat, cosLat);
+  GeographicLib::Math::sincosd(lonDeg, sinLon, cosLon);
+  const Vec3d up(cosLat * cosLon, cosLat * sinLon, sinLat);
+  const double primeVerticalM = kSemiMajorM / std::sqrt(1 - kEccentricitySquared * sinLat * sinLat);
+  return {primeVerticalM * Vec3d(up.x, up.y, (1 - kEccentricitySquared) * up.z), up};
 }
 
-// Where a line enters a box, as a share of its way; nothing where it misses it.
-std::optional<double> entryOf(const OrientedBox& box, const Vec3d& from, const Vec3d& way) {
-  constexpr double kSlackM = 0.01;  // for a box without a height
+bool meetsSphere(const GroundTree::Node& node, const Sight& sight) {
+  const Vec3d toCentre = node.sphereCentreEcefM - sight.from;
+  const double along = std::clamp(glm::dot(toCentre, sight.way) * sight.perLengthSquared, 0.0, 1.0);
+  const Vec3d apart = toCentre - sight.way * along;
+  return glm::dot(apart, apart) <= node.sphereRadiusM * node.sphereRadiusM;
+}
+
+// Where a line enters a node's box, as a share of its way; nothing where it misses it.
+std::optional<double> entryOf(const GroundTree::Node& node, const Sight& sight) {
+  const Vec3d fromCentre = sight.from - node.boxCentreEcefM;
   double enters = 0, leaves = 1;
-  for (const Vec3d& half : box.halfAxesEcefM) {
-    const double lengthM = glm::length(half);
-    if (lengthM == 0) continue;
-    const Vec3d axis = half / lengthM;
-    const double at = glm::dot(from - box.centreEcefM, axis), speed = glm::dot(way, axis);
-    const double extentM = lengthM + kSlackM;
-    if (std::abs(speed) < 1e-12) {
-      if (std::abs(at) > extentM) return std::nullopt;
-      continue;
-    }
-    const double first = (-extentM - at) / speed, second = (extentM - at) / speed;
+  for (const size_t i : {size_t{2}, size_t{0}, size_t{1}}) {  // upwards first: most lines pass above
+    const double at = glm::dot(fromCentre, node.boxAxes[i]), speed = glm::dot(sight.way, node.boxAxes[i]);
+    const double extentM = node.boxExtentsM[i], end = at + speed;
+    if (std::min(at, end) > extentM || std::max(at, end) < -extentM) return std::nullopt;
+    if (std::max(std::abs(at), std::abs(end)) <= extentM) continue;  // between the planes all the way
+    const double per = 1 / speed, first = (-extentM - at) * per, second = (extentM - at) * per;
     enters = std::max(enters, std::min(first, second));
     leaves = std::min(leaves, std::max(first, second));
   }
   return enters <= leaves ? std::optional(enters) : std::nullopt;
 }
-
-GroundHit hitAt(const Vec3d& ecefM, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  return {geodeticFromEcef(ecefM), glm::normalize(glm::cross(b - a, c - a))};
-}
-
-struct Waiting {
-  double enters = 0;
-  TileKey key;
-  bool hasChildren = false;
-  bool operator>(const Waiting& other) const { return enters > other.enters; }
-};
 
 }  // namespace
 
@@ -67,141 +61,79 @@ Result<GroundQuery> GroundQuery::open(const std::string& databasePath) {
   return GroundQuery(std::move(*reader));
 }
 
-Result<const ChunkMeta*> GroundQuery::metaOf(const TileKey& key) {
-  if (const auto found = metas_.find(key.code()); found != metas_.end()) return &found->second;
-  const Result<ChunkMeta> meta = reader_.readMeta(key);
-  if (!meta) return tl::unexpected(meta.error());
-  if (metas_.size() >= kMostMetas) metas_.clear();
-  return &metas_.emplace(key.code(), *meta).first->second;
-}
-
-const GroundQuery::Mesh* GroundQuery::keptMeshOf(const TileKey& key) {
-  const auto found = meshes_.find(key.code());
-  if (found == meshes_.end()) return nullptr;
-  uses_.splice(uses_.begin(), uses_, found->second.use);
-  return &found->second.mesh;
-}
-
-Result<const GroundQuery::Mesh*> GroundQuery::meshOf(const TileKey& key) {
-  if (const Mesh* kept = keptMeshOf(key)) return kept;
-  const Result<StoredChunk> stored = reader_.read(key);
-  if (!stored) return tl::unexpected(stored.error());
-  const Result<ChunkMesh> decoded = decodeMesh(stored->mesh, key);
-  if (!decoded) return tl::unexpected(decoded.error());
-  Mesh mesh;
-  const double stepM = stored->meta.stepM();
-  mesh.originEcefM = ecefFromLattice(stored->meta.originLattice, stepM);
-  mesh.minHeightM = stored->meta.minHeightM, mesh.maxHeightM = stored->meta.maxHeightM;
-  // A step is a power of two and a vertex 16 bits, so the float is exact.
-  for (const ChunkVertex& v : decoded->vertices)
-    mesh.positionsM.push_back(glm::vec3(v.x, v.y, v.z) * static_cast<float>(stepM));
-  mesh.grid = TriangleGrid(*decoded);
-  mesh.indices = decoded->indices;
-
-  meshBytes_ += mesh.bytes();
-  while (meshBytes_ > kMeshBudgetBytes && !uses_.empty()) {
-    meshBytes_ -= meshes_.at(uses_.back()).mesh.bytes();
-    meshes_.erase(uses_.back());
-    uses_.pop_back();
-  }
-  uses_.push_front(key.code());
-  return &meshes_.emplace(key.code(), Kept{std::move(mesh), uses_.begin()}).first->second.mesh;
-}
-
-Result<std::pair<TileKey, const GroundQuery::Mesh*>> GroundQuery::leafAt(double latDeg, double lonDeg) {
-  // Only leaves are kept, so what is found on any level is the leaf.
-  for (const int level : {leafLevel_, leafLevel_ + 1, leafLevel_ - 1}) {
-    if (level < 0 || level > kMaxLevel) continue;
-    const TileKey key = TileKey::containing(latDeg, lonDeg, level);
-    const Mesh* kept = keptMeshOf(key);
-    if (kept == nullptr) continue;
-    leafLevel_ = level;
-    return std::pair(key, kept);
-  }
-  TileKey key = TileKey::containing(latDeg, lonDeg, 0);
-  Result<const ChunkMeta*> meta = metaOf(key);
-  while (meta && (*meta)->childCount > 0) {
-    key = TileKey::containing(latDeg, lonDeg, key.level() + 1);
-    meta = metaOf(key);
-  }
-  if (!meta) return tl::unexpected(meta.error());
-  const Result<const Mesh*> mesh = meshOf(key);
-  if (!mesh) return tl::unexpected(mesh.error());
-  leafLevel_ = key.level();
-  return std::pair(key, *mesh);
-}
-
 Result<GroundHit> GroundQuery::under(double latDeg, double lonDeg) {
-  const auto leaf = leafAt(latDeg, lonDeg);
+  if (const auto begun = tree_.begin(); !begun) return tl::unexpected(begun.error());
+  const auto leaf = tree_.leafAt(latDeg, lonDeg);
   if (!leaf) return tl::unexpected(leaf.error());
-  const auto& [key, found] = *leaf;
-  const Mesh& mesh = *found;
+  const auto found = tree_.surfaceOf(*leaf);
+  if (!found) return tl::unexpected(found.error());
+  const SurfaceGrid& surface = **found;
 
   // The plumb line, a metre beyond the ground's heights.
-  const double topM = mesh.maxHeightM + 1, deepM = topM - (mesh.minHeightM - 1);
-  const Vec3d up = upAt(latDeg, lonDeg);
-  const Vec3d top = ecefFromGeodetic({latDeg, lonDeg, topM}) - mesh.originEcefM, way = -deepM * up;
+  const double topM = surface.maxHeightM() + 1, deepM = topM - (surface.minHeightM() - 1);
+  const Plumb plumb = plumbAt(latDeg, lonDeg);
+  const Vec3d top = plumb.footEcefM + plumb.up * topM, way = -deepM * plumb.up;
   // The triangle that it goes through, or comes nearest to: a chunk's edges are chords of its cell's.
-  Crossing best{0, -1e30};
-  Vec3d normal{};
-  const auto look = [&](size_t i) {
-    const Vec3d a(mesh.positionsM[mesh.indices[i]]), b(mesh.positionsM[mesh.indices[i + 1]]),
-        c(mesh.positionsM[mesh.indices[i + 2]]);
-    const auto crossing = crossingOf(top, way, a, b, c);
-    if (crossing && crossing->inside > best.inside) best = *crossing, normal = glm::cross(b - a, c - a);
-    return best.inside >= 0;
-  };
-  const TileParam at = paramFromLatLon(key, {latDeg, lonDeg});
-  const bool isInside = std::ranges::any_of(mesh.grid.near(at.s, at.t), look);
-  for (size_t i = 0; !isInside && i + 2 < mesh.indices.size(); i += 3)
-    if (look(i)) break;
-  if (best.inside < -1)
-    return fail(ErrorKind::badData, fmt::format("{} has no triangle under {} {}", key.name(), latDeg, lonDeg));
-  return GroundHit{{latDeg, lonDeg, topM - deepM * best.along}, glm::normalize(normal)};
+  auto hit = surface.cast(top, way, 1);
+  if (!hit) {
+    const SurfaceGrid::Nearest nearest = surface.nearest(top, way);
+    if (nearest.crossing.inside < -1)
+      return fail(ErrorKind::badData,
+                  fmt::format("{} has no triangle under {} {}", tree_.node(*leaf).key.name(), latDeg, lonDeg));
+    hit = SurfaceGrid::Hit{nearest.crossing.along, nearest.triangle};
+  }
+  return GroundHit{
+      {latDeg, lonDeg, topM - deepM * hit->along}, top + way * hit->along, surface.normalEcef(hit->triangle)};
 }
 
-// Chunks in the order in which the line enters their boxes, parents before children, until the nearest hit comes before
-// all that is left.
+// Chunks by and by as the line enters their boxes, parents before children, until none that is left comes before the
+// nearest hit. Siblings wait in this order on a stack, so that what is near is looked at first.
 Result<std::optional<GroundHit>> GroundQuery::between(const Vec3d& fromEcefM, const Vec3d& toEcefM) {
-  const Vec3d way = toEcefM - fromEcefM;
-  std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> waiting;
-  int looked = 0;
-  const auto look = [&](const TileKey& key) -> Result<void> {
-    if (++looked > kMostChunks)
-      return fail(ErrorKind::unsupported, fmt::format("a line of sight meets more than {} chunks", kMostChunks));
-    const Result<const ChunkMeta*> meta = metaOf(key);
-    if (!meta) return tl::unexpected(meta.error());
-    if (const auto enters = entryOf((*meta)->box, fromEcefM, way))
-      waiting.push({*enters, key, (*meta)->childCount > 0});
-    return {};
-  };
-  for (int octant = 0; octant < kOctants; ++octant)
-    if (const auto ok = look(TileKey::octantRoot(octant)); !ok) return tl::unexpected(ok.error());
+  if (const auto begun = tree_.begin(); !begun) return tl::unexpected(begun.error());
+  Sight sight{fromEcefM, toEcefM - fromEcefM};
+  const double lengthSquared = glm::dot(sight.way, sight.way);
+  if (lengthSquared > 0) sight.perLengthSquared = 1 / lengthSquared;
 
-  std::optional<GroundHit> nearest;
+  int looked = 0;
+  waiting_.clear();
+  // The children of one node, the farthest of them first onto the stack.
+  const auto push = [&](GroundTree::NodeNumber first, uint32_t count, double nearestAlong) {
+    const size_t begin = waiting_.size();
+    for (GroundTree::NodeNumber number = first; number < first + count; ++number) {
+      ++looked;
+      const GroundTree::Node& node = tree_.node(number);
+      if (!meetsSphere(node, sight)) continue;
+      const auto enters = entryOf(node, sight);
+      if (!enters || *enters > nearestAlong) continue;
+      waiting_.push_back({*enters, number});
+      for (size_t i = waiting_.size() - 1; i > begin && waiting_[i].enters > waiting_[i - 1].enters; --i)
+        std::swap(waiting_[i], waiting_[i - 1]);
+    }
+  };
+
   double nearestAlong = 1;
-  while (!waiting.empty() && waiting.top().enters <= nearestAlong) {
-    const auto [enters, key, hasChildren] = waiting.top();
-    waiting.pop();
-    if (hasChildren) {
-      for (const TileKey& child : key.children())
-        if (const auto ok = look(child); !ok) return tl::unexpected(ok.error());
+  std::optional<GroundHit> nearest;
+  push(0, kOctants, nearestAlong);
+  while (!waiting_.empty()) {
+    const Waiting next = waiting_.back();
+    waiting_.pop_back();
+    if (next.enters > nearestAlong) continue;
+    if (!tree_.node(next.node).isLeaf) {
+      const auto first = tree_.childrenOf(next.node);
+      if (!first) return tl::unexpected(first.error());
+      push(*first, tree_.node(next.node).childCount, nearestAlong);
+      if (looked > kMostChunks)
+        return fail(ErrorKind::unsupported, fmt::format("a line of sight meets more than {} chunks", kMostChunks));
       continue;
     }
-    const Result<const Mesh*> mesh = meshOf(key);
-    if (!mesh) return tl::unexpected(mesh.error());
-    const std::vector<glm::vec3>& positionsM = (*mesh)->positionsM;
-    const std::vector<uint16_t>& indices = (*mesh)->indices;
-    const Vec3d from = fromEcefM - (*mesh)->originEcefM;
-    constexpr double kOnTheEdge = -1e-9;  // a line along an edge meets one of its triangles
-    for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-      const Vec3d a(positionsM[indices[i]]), b(positionsM[indices[i + 1]]), c(positionsM[indices[i + 2]]);
-      const auto crossing = crossingOf(from, way, a, b, c);
-      if (!crossing || crossing->inside < kOnTheEdge || crossing->along < 0 || crossing->along > nearestAlong) continue;
-      nearestAlong = crossing->along;
-      nearest = hitAt(fromEcefM + way * crossing->along, a, b, c);
-    }
+    const auto surface = tree_.surfaceOf(next.node);
+    if (!surface) return tl::unexpected(surface.error());
+    const auto hit = (*surface)->cast(fromEcefM, sight.way, nearestAlong);
+    if (!hit) continue;
+    nearestAlong = hit->along;
+    nearest = GroundHit{{}, fromEcefM + sight.way * hit->along, (*surface)->normalEcef(hit->triangle)};
   }
+  if (nearest) nearest->position = geodeticFromEcef(nearest->ecefM);
   return nearest;
 }
 

@@ -197,6 +197,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
     impl.lists->reserve(*impl.gpu, input.draws.size());
     impl.scene->frame() = frameData(input);
     impl.scene->placeSky(input, impl.options.airByPixel);
+    impl.scene->faceAs(input.view.frustum);
     const size_t parted = partByHaze(asked.draws, asked.view.eyeEcefM, impl.scene->frame(), impl.draws);
     const size_t byVertex = impl.options.airByPixel ? 0 : parted;
     input.draws = impl.draws;

@@ -234,6 +234,7 @@ void ScenePass::beginWith(const vk::raii::CommandBuffer& commands, const vk::Ren
   commands.setViewport(0,
                        vk::Viewport(0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1));
   commands.setScissor(0, info.renderArea);
+  commands.setFrontFace(flips_ ? vk::FrontFace::eClockwise : vk::FrontFace::eCounterClockwise);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, nullptr);
 }
 

@@ -31,6 +31,11 @@ class ScenePass {
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
   // What drawSky draws: the sky by dome or by pixel, and which stars.
   void placeSky(const FrameInput& input, bool byPixel);
+  // In a mirrored view what is counterclockwise as seen from outside is clockwise on the screen; mirrored both ways it
+  // is not.
+  void faceAs(const Frustum& frustum) {
+    flips_ = (frustum.tanLeft > frustum.tanRight) != (frustum.tanBottom > frustum.tanTop);
+  }
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
   // One render pass, the whole, or a first and one that goes on with what that has drawn, or draw it over: begin, draw,
@@ -58,6 +63,7 @@ class ScenePass {
                 const ChunkPools& pools, const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first,
                 uint32_t count) const;
 
+  bool flips_ = false;
   GpuBuffer frame_, starBuffer_;
   std::vector<StarInstance> placedStars_;
   std::optional<DomePart> dome_;  // nothing: by pixel

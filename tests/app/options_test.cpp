@@ -238,7 +238,7 @@ TEST_CASE("the example channels look left, ahead and right, and one of them answ
     CHECK(o.rateOfHost);
     CHECK(o.hostDelay == HostDelayMode::off);
     REQUIRE(o.hosts.size() == 1);
-    CHECK(o.hosts[0].ends_with("?reply=none") == (name != "centre"));
+    CHECK(o.hosts[0].ends_with("?answers=no") == (name != "centre"));
     CHECK(parse({"--config", path.c_str(), "--rate", "30"}).options.rateHz == 30);
     CHECK_FALSE(parse({"--config", path.c_str(), "--rate", "30"}).options.rateOfHost);
   }

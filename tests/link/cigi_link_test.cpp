@@ -72,8 +72,8 @@ TEST_CASE("CIGI replies: Wireshark reads the Start of Frame that was meant, in e
     control.databaseNumber = 3;
     replies.heard({0x7f000001, 9000}, {{3, 3}, order}, control, 5'000'000'000);
     REQUIRE(replies.answer(HeightResponse{12, true, 7, 345.5}));
-    const auto loading = replies.frame({true, true}, 5'000'120'000);
-    const auto loaded = replies.frame({false, false}, 5'016'000'000);
+    const auto loading = replies.frame({true, true}, 4711, 5'000'120'000);
+    const auto loaded = replies.frame({false, false}, 4711, 5'016'000'000);
     REQUIRE((loading && loaded));
     CHECK(loading->receiver == Peer{0x7f000001, 9000});
     const auto text =
@@ -103,7 +103,7 @@ TEST_CASE("CIGI replies: the handshake of databases, the end of a silent host, a
   Replies replies(std::nullopt, int8_t{5});
   const Peer host{1, 2};
   const auto number = [&](const FrameReport& report, int64_t nowNs) {
-    const auto reply = replies.frame(report, nowNs);
+    const auto reply = replies.frame(report, {}, nowNs);
     return reply ? std::get<StartOfFrame>(parse(reply->message)->packets.at(0)).databaseNumber : int8_t{99};
   };
   IgControl control;
@@ -129,7 +129,7 @@ TEST_CASE("CIGI replies: the handshake of databases, the end of a silent host, a
   CHECK(number({}, 5'000'000'003) == 5);
   replies.heard(host, {}, control, 1);
   Replies fixed(Peer{3, 4}, std::nullopt);
-  CHECK(fixed.frame({}, 0)->receiver == Peer{3, 4});  // before any host
+  CHECK(fixed.frame({}, {}, 0)->receiver == Peer{3, 4});  // before any host
 
   control.databaseNumber = 0;
   size_t taken = 0;
@@ -138,7 +138,7 @@ TEST_CASE("CIGI replies: the handshake of databases, the end of a silent host, a
   replies.heard(host, {}, control, 1);
   size_t sent = 0, messages = 0;
   while (sent < kMaxAnswers && messages < 100) {
-    const auto message = replies.frame({}, 1)->message;
+    const auto message = replies.frame({}, {}, 1)->message;
     CHECK(message.size() <= kMaxLongMessageBytes);
     sent += parse(message)->packets.size() - 1;
     ++messages;
@@ -147,7 +147,7 @@ TEST_CASE("CIGI replies: the handshake of databases, the end of a silent host, a
   CHECK(messages <= 4);  // more than a thousand in each
   replies.answer(HeightExtendedResponse{});
   replies.heard({9, 9}, {}, control, 1);  // another host: not its questions
-  CHECK(parse(replies.frame({}, 1)->message)->packets.size() == 1);
+  CHECK(parse(replies.frame({}, {}, 1)->message)->packets.size() == 1);
 }
 
 TEST_CASE("a host holds the lock while it speaks, and no longer") {
@@ -230,7 +230,7 @@ TEST_CASE("CIGI over UDP: a synchronous host sends a frame for each Start of Fra
   const auto socket = UdpSocket::connectTo({kLoopbackAddress, port});
   ReplyListener replies(*socket);
   uint32_t number = 0;
-  const auto packetAt = [&](double timeS) -> std::optional<Bytes> {
+  const auto packetAt = [&](double timeS, bool) -> std::optional<Bytes> {
     return hostMessage({3, 3}, {number++, replies.igFrame(), timeS, poseNumber(number)});
   };
   SendOptions options;

@@ -118,7 +118,7 @@ TEST_CASE("a synchronous host sends at most as often as it is told to") {
   SendOptions options;
   options.durationS = 0.5;
   const auto packets = [&](double leastS, bool isDemanded) {
-    const auto packetAt = [](double) { return std::optional(Bytes(16)); };
+    const auto packetAt = [](double, bool) { return std::optional(Bytes(16)); };
     const auto awaitDemand = [=](int timeoutMs) {
       if (!isDemanded) std::this_thread::sleep_for(std::chrono::milliseconds(timeoutMs));
       return isDemanded;

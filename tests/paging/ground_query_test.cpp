@@ -9,6 +9,7 @@
 
 #include "bake/bake_job.h"
 #include "bake/raster_files.h"
+#include "terrain/database.h"
 
 namespace eye {
 namespace {
@@ -117,6 +118,106 @@ TEST_CASE("ground query: a line of sight ends on the ground, and is above it bef
   const auto through = query->between(ecefFromGeodetic({49.2, 20.2, 5000}), ecefFromGeodetic({-49.2, -159.8, 5000}));
   REQUIRE((through && *through));
   CHECK((*through)->position.altM == Approx(bilinearM(49.2, 20.2)).margin(kErrorM + 0.2));
+}
+
+// Every triangle of every leaf, in ecef, relative to a place among them.
+struct AllTriangles {
+  Vec3d originEcefM{};
+  std::vector<std::array<Vec3d, 3>> triangles;
+};
+
+AllTriangles allTriangles(const std::string& path, double southDeg, double westDeg, double northDeg, double eastDeg) {
+  AllTriangles all;
+  all.originEcefM = ecefFromGeodetic({(southDeg + northDeg) / 2, (westDeg + eastDeg) / 2, 0});
+  const auto reader = DatabaseReader::open(path);
+  REQUIRE(reader);
+  std::vector<TileKey> leaves;
+  REQUIRE(reader->forEach([&](const ChunkMeta& meta) -> Result<void> {
+    const TileBounds b = meta.key.bounds();
+    const bool isNear = b.northDeg > southDeg && b.southDeg < northDeg && b.eastDeg > westDeg && b.westDeg < eastDeg;
+    if (meta.childCount == 0 && isNear) leaves.push_back(meta.key);
+    return {};
+  }));
+  for (const TileKey& key : leaves) {
+    const auto stored = reader->read(key);
+    REQUIRE(stored);
+    const auto mesh = decodeMesh(stored->mesh, key);
+    REQUIRE(mesh);
+    const double stepM = stored->meta.stepM();
+    const Vec3d origin = ecefFromLattice(stored->meta.originLattice, stepM) - all.originEcefM;
+    const auto corner = [&](size_t i) {
+      const ChunkVertex& v = mesh->vertices[mesh->indices[i]];
+      return origin + Vec3d(v.x, v.y, v.z) * stepM;
+    };
+    for (size_t i = 0; i + 2 < mesh->indices.size(); i += 3)
+      all.triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
+  }
+  return all;
+}
+
+// The nearest hit of a line on any of them, as a share of the way; by planes and sides, no code shared with what is
+// tested.
+std::optional<double> nearestHit(const AllTriangles& all, const Vec3d& fromEcefM, const Vec3d& toEcefM) {
+  const Vec3d from = fromEcefM - all.originEcefM, way = toEcefM - fromEcefM;
+  std::optional<double> nearest;
+  for (const auto& [a, b, c] : all.triangles) {
+    const Vec3d normal = glm::cross(b - a, c - a);
+    const double speed = glm::dot(normal, way);
+    if (speed == 0) continue;
+    const double along = glm::dot(normal, a - from) / speed;
+    if (along < 0 || along > nearest.value_or(1)) continue;
+    const Vec3d at = from + way * along;
+    const bool isInside = glm::dot(glm::cross(b - a, at - a), normal) >= 0 &&
+                          glm::dot(glm::cross(c - b, at - b), normal) >= 0 &&
+                          glm::dot(glm::cross(a - c, at - c), normal) >= 0;
+    if (isInside) nearest = along;
+  }
+  return nearest;
+}
+
+TEST_CASE("ground query: lines of sight hit what the nearest of all triangles says, short, long, steep and level") {
+  auto query = GroundQuery::open(hills());
+  REQUIRE(query);
+  const AllTriangles all = allTriangles(hills(), 48.9, 19.9, 49.6, 20.6);
+  REQUIRE(all.triangles.size() > 5000);
+  std::mt19937_64 random(7);
+  const auto within = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  int hits = 0, misses = 0;
+  for (int i = 0; i < 600; ++i) {
+    const Geodetic a{within(49.05, 49.45), within(20.05, 20.45), within(-200, 2000)};
+    // A kilometre, ten, all across, or straight down with a corner's and an edge's rounding.
+    const double reachDeg[] = {0.01, 0.1, 0.4, 0};
+    const double reach = reachDeg[i % 4];
+    const Geodetic b{std::clamp(a.latDeg + within(-reach, reach), 49.0, 49.5),
+                     std::clamp(a.lonDeg + within(-reach, reach), 20.0, 20.5), within(-200, 2000)};
+    const Vec3d from = ecefFromGeodetic(a), to = ecefFromGeodetic(b);
+    const auto hit = query->between(from, to);
+    REQUIRE(hit);
+    const auto truth = nearestHit(all, from, to);
+    INFO(i << ": " << a.latDeg << " " << a.lonDeg << " " << a.altM << " to " << b.latDeg << " " << b.lonDeg << " "
+           << b.altM);
+    REQUIRE(hit->has_value() == truth.has_value());
+    ++(truth ? hits : misses);
+    if (truth) CHECK(glm::length((*hit)->ecefM - (from + (to - from) * *truth)) < 1e-6);
+  }
+  CHECK(hits > 100);
+  CHECK(misses > 100);
+}
+
+TEST_CASE("ground query: what has been forgotten is read again, with the same answers") {
+  auto warm = GroundQuery::open(hills());
+  REQUIRE(warm);
+  // Far apart, and more chunks than are kept at once: each place in a leaf of its own, all round the globe.
+  std::vector<std::pair<double, double>> places;
+  for (int i = 0; i < 400; ++i)
+    places.emplace_back(49.0 + 0.5 * (i % 20) / 20 + 1e-3, 20.0 + 0.5 * (i / 20) / 20 + 1e-3);
+  for (int i = 0; i < 100; ++i) places.emplace_back(-80 + 1.6 * i, -179 + 3.5 * i);
+  std::vector<double> first;
+  for (const auto& [lat, lon] : places) first.push_back(warm->under(lat, lon)->position.altM);
+  for (size_t i = places.size(); i-- > 0;)
+    CHECK(warm->under(places[i].first, places[i].second)->position.altM == first[i]);
 }
 
 }  // namespace

@@ -131,4 +131,50 @@ TEST_CASE("horizon: both tests and none give the same picture") {
   }
 }
 
+TEST_CASE("channels: a mirrored view is the picture of the other one in a mirror, with and without culling") {
+  const std::string database = carpathiaDatabase();
+  if (database.empty()) return;
+  const std::string pose = "49.25,20.1,1900,180,-8,7";
+  constexpr int kWidth = 320;
+  // Off axis, so that a mirror that turned the view instead would show something else.
+  const std::string frustumWord = "--frustum=-35,20,-22,12";
+  for (const std::string culling : {"none", "dynamic"}) {
+    const std::vector<std::string> common{frustumWord,    "--culling",           culling, "--depth-map", "160x100",
+                                          "--screenshot", testFile("mirror.png")};
+    const auto picture = [&](const std::string& mirror) {
+      std::vector<std::string> words = common;
+      words.insert(words.end(), {"--mirror", mirror});
+      RasterImage map = draw(database, "mirror", kWidth, pose, words);
+      return std::pair(std::move(map), readRaster(testFile("mirror.png")));
+    };
+    const auto [plainMap, plain] = picture("none");
+    for (const std::string mirror : {"h", "v", "hv"}) {
+      const auto [map, image] = picture(mirror);
+      int sky = 0, otherSky = 0, otherDistance = 0, otherColour = 0;
+      for (int row = 0; row < kHeight; ++row) {
+        for (int column = 0; column < kWidth; ++column) {
+          const int thereRow = mirror.ends_with('v') ? kHeight - 1 - row : row;
+          const int thereColumn = mirror.starts_with('h') ? kWidth - 1 - column : column;
+          const float a = plainMap.at(0, thereRow, thereColumn), b = map.at(0, row, column);
+          sky += std::isnan(a);
+          otherSky += std::isnan(a) != std::isnan(b);
+          otherDistance += std::abs(a - b) > 2e-3f * a;
+          float most = 0;
+          for (int band = 0; band < 3; ++band)
+            most = std::max(most, std::abs(plain.at(band, thereRow, thereColumn) - image.at(band, row, column)));
+          otherColour += most > 4;  // of 255: dithering is by the place on the screen
+        }
+      }
+      // Edges through a pixel's very middle fall to one side in both: single pixels along silhouettes.
+      constexpr int kPixels = kWidth * kHeight;
+      CAPTURE(culling, mirror, sky, otherSky, otherDistance, otherColour);
+      CHECK(sky > kPixels / 20);
+      CHECK(sky < kPixels * 19 / 20);
+      CHECK(otherSky < kPixels / 1000);
+      CHECK(otherDistance < kPixels / 200);
+      CHECK(otherColour < kPixels / 100);
+    }
+  }
+}
+
 }  // namespace eye::truth

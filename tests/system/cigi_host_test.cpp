@@ -102,4 +102,66 @@ TEST_CASE("CIGI: a recorded session over UDP drives the picture in both versions
   }
 }
 
+TEST_CASE("CIGI: a host that asks prints every answer and Start of Frame, in both versions") {
+  const std::string database = carpathiaDatabase();
+  if (database.empty()) return;
+  for (const std::string version : {"3.3", "4.0"}) {
+    const uint16_t port = freePort();
+    const std::string address = fmt::format("127.0.0.1:{}", port);
+    auto flight = std::async(std::launch::async, [&] {
+      return runProgram("eyepoint", {"--headless", "--terrain", database, "--host", "cigi://" + address, "--size",
+                                     "160x120", "--duration", "7", "--log-level", "error"});
+    });
+    REQUIRE(awaitListeners("127.0.0.1", port));
+    const ProgramRun host = runProgram("eyepoint-host", {"--protocol",
+                                                         "cigi",
+                                                         "--cigi-version",
+                                                         version,
+                                                         "--synchronous",
+                                                         "--channels",
+                                                         "1",
+                                                         "--to",
+                                                         address,
+                                                         "--pose",
+                                                         "49.25,20.1,2600,180,-10,0",
+                                                         "--ask",
+                                                         "hat,hot",
+                                                         "--ask",
+                                                         "hat-hot,los",
+                                                         "--ask",
+                                                         "los-extended",
+                                                         "--ask-every",
+                                                         "10",
+                                                         "--print-replies",
+                                                         "--duration",
+                                                         "2"});
+    const ProgramRun drawn = flight.get();
+    INFO(version << ": " << host.out << host.err << drawn.err);
+    REQUIRE(host.exitCode == 0);
+    REQUIRE(drawn.exitCode == 0);
+    const std::string said = host.out + host.err;
+    const auto count = [&](const std::string& words) {
+      int found = 0;
+      for (size_t at = said.find(words); at != std::string::npos; at = said.find(words, at + 1)) ++found;
+      return found;
+    };
+    // An answer to each request of each tenth frame that was answered in time, no more.
+    const int starts = count("Start of Frame "), due = starts / 10 + 1;
+    CHECK(starts > 20);
+    for (const std::string answer : {"HAT 1 ", "HOT 2 ", "HAT/HOT 3 ", "LOS 4 ", "LOS extended 5 "}) {
+      INFO(answer);
+      CHECK(count(answer) >= 2);
+      CHECK(count(answer) <= due + 1);
+    }
+    CHECK(count("not valid") == 0);  // ten degrees down there is ground
+    CHECK(numberBefore(said, " datagrams not understood") == 0);
+    // The two ways to ask agree.
+    const auto after = [&](const std::string& words) {
+      const size_t at = said.find(words);
+      return at == std::string::npos ? -1e9 : std::stod(said.substr(said.find("): ", at) + 3));
+    };
+    CHECK(after("HAT 1 ") + after("HOT 2 ") == Approx(2600).margin(0.011));
+  }
+}
+
 }  // namespace eye::truth

@@ -11,9 +11,13 @@
 #include "base/command_line.h"
 #include "base/version.h"
 #include "link/cigi_host.h"
+#include "link/host_lockstep.h"
+#include "link/reply_text.h"
 #include "link/scenario.h"
 #include "link/sender.h"
 #include "link/state_source.h"
+#include "link/udp_group.h"
+#include "ticker.h"
 
 namespace {
 
@@ -21,7 +25,10 @@ using namespace eye;
 
 struct Arguments {
   std::string protocol, to, interface, track, scenario, pose, cigiVersion = "3.3", logLevel = "info";
-  bool synchronous = false;
+  bool synchronous = false, printReplies = false;
+  std::optional<int> channels;
+  std::vector<std::string> ask;
+  cigi::AskPlan plan;            // what `ask` says, and how often
   std::optional<double> rateHz;  // unset: 60, and no limit with --synchronous
   SendOptions send;
 };
@@ -43,6 +50,10 @@ void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--protocol", args.protocol, "What to speak: native-fdm or cigi")->type_name("NAME")->required();
   app.add_option("--cigi-version", args.cigiVersion, "Of CIGI: 3.3 or 4.0")->type_name("V")->capture_default_str();
   app.add_flag("--synchronous", args.synchronous, "CIGI: one message for each Start of Frame, --rate a second at most");
+  app.add_option(
+         "--channels", args.channels,
+         "CIGI, synchronous: the next message when so many channels have shown the last one (a group's, 1 to 64)")
+      ->type_name("N");
   app.add_option("--to", args.to, "Where to send")->type_name("ADDR:PORT")->required();
   app.add_option("--interface", args.interface, "By which network interface a multicast group is sent to: its address")
       ->type_name("ADDR");
@@ -55,6 +66,18 @@ void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--rate", args.rateHz, "Packets a second; default 60")->type_name("HZ");
   app.add_option("--duration", args.send.durationS, "Stop after this many seconds")->type_name("S");
   app.add_flag("--loop", args.send.loop, "Begin again at the end");
+  auto* ground = app.add_option_group("Questions to the image generator (CIGI)");
+  ground
+      ->add_option("--ask", args.ask,
+                   "What is asked about the aircraft, repeatable: hat (its height above terrain), hot (the terrain's "
+                   "height), hat-hot (both, and the slope), los (what is ahead within 20 km), los-extended (and where)")
+      ->type_name("hat/hot/hat-hot/los/los-extended");
+  ground
+      ->add_option("--ask-every", args.plan.everyFrames,
+                   "Update period of these requests, host frames: 1 asks in each, 255 at most")
+      ->type_name("FRAMES")
+      ->capture_default_str();
+  ground->add_flag("--print-replies", args.printReplies, "A line for each Start of Frame and each answer");
   auto* bad = app.add_option_group("A bad link");
   bad->add_option("--jitter", args.send.badLink.jitterMs, "Delay each packet by 0 to MS")->type_name("MS");
   bad->add_option("--loss", args.send.badLink.loss, "Share of packets not sent, 0 to 1")->type_name("P");
@@ -70,7 +93,8 @@ void declareOptions(CLI::App& app, Arguments& args) {
       "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --scenario low-level --loop\n"
       "  eyepoint-host --protocol native-fdm --to 127.0.0.1:5550 --track flight.pcap\n"
       "  eyepoint-host --protocol cigi --cigi-version 4.0 --to 127.0.0.1:8000 --scenario orbit --synchronous\n"
-      "  eyepoint-host --protocol cigi --to 239.255.69.89:8000 --scenario low-level --loop     several channels\n"
+      "  eyepoint-host --protocol cigi --to 127.0.0.1:8000 --scenario low-level --ask hat-hot,los --print-replies\n"
+      "  eyepoint-host --protocol cigi --to 239.255.69.89:8000 --scenario low-level --loop --synchronous --channels 3\n"
       "  eyepoint-host --protocol native-fdm --to 10.0.0.2:5550 --track glider.igc --jitter 20 --loss 0.01");
 }
 
@@ -94,7 +118,26 @@ Result<void> check(const Arguments& args) {
     return fail(ErrorKind::usage, fmt::format("--rate {} is outside 0.1 to 10000 Hz", *args.rateHz));
   if (args.send.durationS && !(*args.send.durationS > 0 && *args.send.durationS <= 1e7))
     return fail(ErrorKind::usage, fmt::format("--duration {} is outside 0 to 10000000 s", *args.send.durationS));
+  const bool asks = !args.ask.empty() || args.printReplies;
+  if (asks && !speaksCigi(args))
+    return fail(ErrorKind::usage, "--ask and --print-replies need --protocol cigi: native-fdm has no answers");
+  if (args.plan.everyFrames < 1 || args.plan.everyFrames > 255)
+    return fail(ErrorKind::usage, fmt::format("--ask-every {} is outside 1 to 255 host frames", args.plan.everyFrames));
+  if (args.channels && !args.synchronous)
+    return fail(ErrorKind::usage, "--channels needs --synchronous: without it no answer is waited for");
+  constexpr int kMostChannels = 64;
+  if (args.channels && (*args.channels < 1 || *args.channels > kMostChannels))
+    return fail(ErrorKind::usage, fmt::format("--channels {} is outside 1 to {}", *args.channels, kMostChannels));
   return checkBadLink(args.send.badLink);
+}
+
+// One address is one channel: several hear a group.
+Result<void> checkChannels(const Arguments& args, const Endpoint& to) {
+  const auto place = resolvePeer(to);
+  if (!place || args.channels.value_or(1) == 1 || reachOf(place->address) != Reach::one) return {};
+  return fail(ErrorKind::usage, fmt::format("--channels {} needs --to a multicast group or broadcast address, such as "
+                                            "239.255.69.89:8000; {} is one channel",
+                                            *args.channels, args.to));
 }
 
 // What is flown: a function of time, or a capture of the protocol itself, whose packets go out as they were recorded.
@@ -113,6 +156,11 @@ Result<Flight> recordedFlight(const Arguments& args) {
     if (!protocol)
       return fail(protocol.error().kind, fmt::format("track '{}': {}", args.track, protocol.error().message));
     if (*protocol == spoken && !args.synchronous) {
+      if (!args.ask.empty())
+        return fail(ErrorKind::usage,
+                    fmt::format("--ask: the packets of '{}' go out as they were recorded; --synchronous flies their "
+                                "path instead and asks",
+                                args.track));
       auto packets = parsePcapPackets(*bytes, spoken);
       if (!packets)
         return fail(packets.error().kind, fmt::format("track '{}': {}", args.track, packets.error().message));
@@ -137,47 +185,6 @@ Result<Flight> flightOf(const Arguments& args) {
   return Flight{[pose = *pose](double) { return pose; }, 0, {}};
 }
 
-std::string textOf(cigi::IgMode mode) {
-  constexpr const char* kNames[] = {"standby", "operate", "debug", "maintenance"};
-  return kNames[static_cast<size_t>(mode)];
-}
-
-// One line a second, and what to do when nobody hears.
-class Ticker {
- public:
-  Ticker(std::string to, const cigi::ReplyListener* replies) : to_(std::move(to)), replies_(replies) {}
-  void operator()(const SendReport& report) {
-    const double sinceS = report.elapsedS - elapsedS_;
-    const double rateHz = static_cast<double>(report.datagrams - datagrams_) / sinceS;
-    datagrams_ = report.datagrams, elapsedS_ = report.elapsedS;
-    std::string position = "nothing sent yet";
-    if (const auto& pose = report.pose)
-      position =
-          fmt::format("{:.6f} {:.6f} {:.1f} m, heading {:.1f} pitch {:.1f} roll {:.1f}", pose->position.latDeg,
-                      pose->position.lonDeg, pose->position.altM, pose->headingDeg, pose->pitchDeg, pose->rollDeg);
-    spdlog::info("{:6.1f} s, {} packets, {:.1f} Hz, {}{}{}", report.elapsedS, report.datagrams, rateHz, position,
-                 report.nobodyListens ? fmt::format(" (nobody listens at {} yet)", to_) : "", answers(sinceS));
-  }
-
- private:
-  std::string answers(double sinceS) {
-    if (replies_ == nullptr) return "";
-    const cigi::HeardReplies heard = replies_->heard();
-    const double rateHz = static_cast<double>(heard.starts - starts_) / sinceS;
-    starts_ = heard.starts;
-    if (heard.starts == 0) return "; no Start of Frame yet";
-    const cigi::StartOfFrame& start = heard.newest;
-    return fmt::format("; Start of Frame {:.1f} Hz, frame {}, mode {}, database {}{}{}", rateHz, start.igFrame,
-                       textOf(start.mode), start.databaseNumber, start.overframing ? ", overframing" : "",
-                       start.paging ? ", paging" : "");
-  }
-
-  std::string to_;
-  const cigi::ReplyListener* replies_;
-  uint64_t datagrams_ = 0, starts_ = 0;
-  double elapsedS_ = 0;
-};
-
 SendReport send(const Arguments& args, Flight flight, const UdpSocket& socket, cigi::ReplyListener* replies) {
   Ticker ticker(args.to, replies);
   const double rateHz = args.rateHz.value_or(60);
@@ -187,29 +194,51 @@ SendReport send(const Arguments& args, Flight flight, const UdpSocket& socket, c
     return sendPackets(packetsFromPoses(flight.poseAt, flight.durationS, rateHz), socket, args.send, stopAsked, ticker);
   const auto igFrame = [replies] { return replies->igFrame(); };
   if (!args.synchronous)
-    return sendPackets(cigiPacketsFromPoses(flight.poseAt, flight.durationS, rateHz, versionOf(args), igFrame), socket,
-                       args.send, stopAsked, ticker);
-  uint32_t number = 0;
-  const auto packetAt = [&](double timeS) -> std::optional<std::vector<std::byte>> {
+    return sendPackets(
+        cigiPacketsFromPoses(flight.poseAt, flight.durationS, rateHz, versionOf(args), igFrame, args.plan), socket,
+        args.send, stopAsked, ticker);
+  const auto messageOf = [&](uint32_t frame, double timeS) -> std::optional<std::vector<std::byte>> {
     if (timeS > flight.durationS && !args.send.loop) return std::nullopt;
     const double atS = flight.durationS > 0 ? std::fmod(timeS, flight.durationS) : 0;
-    return cigi::hostMessage(versionOf(args), {number++, igFrame(), timeS, flight.poseAt(atS)});
+    return cigi::hostMessage(versionOf(args),
+                             {frame, igFrame(), timeS, flight.poseAt(atS), cigi::requestsAt(args.plan, frame)});
   };
-  const auto awaitDemand = [replies](int timeoutMs) { return replies->awaitStart(timeoutMs); };
-  return sendOnDemand({packetAt, awaitDemand, args.rateHz ? 1 / *args.rateHz : 0}, socket, args.send, stopAsked,
-                      ticker);
+  const double leastS = args.rateHz ? 1 / *args.rateHz : 0;
+  if (args.channels) {
+    cigi::Lockstep lockstep(*replies, static_cast<size_t>(*args.channels), messageOf);
+    const auto next = [&](double timeS, bool demanded) { return lockstep.packetAt(timeS, demanded); };
+    const auto await = [&](int timeoutMs) { return lockstep.await(timeoutMs); };
+    return sendOnDemand({next, await, leastS, cigi::kResendS}, socket, args.send, stopAsked, ticker);
+  }
+  uint32_t number = 0;
+  const auto next = [&](double timeS, bool) { return messageOf(++number, timeS); };
+  const auto await = [replies](int timeoutMs) { return replies->awaitStart(timeoutMs); };
+  return sendOnDemand({next, await, leastS}, socket, args.send, stopAsked, ticker);
+}
+
+// A line each; with several channels, by the channel. The listener's thread.
+void printReplies(const Peer& sender, const cigi::Message& message) {
+  for (const cigi::Packet& packet : message.packets)
+    if (const std::string line = cigi::textOf(packet); !line.empty()) spdlog::info("{}: {}", toText(sender), line);
 }
 
 int fly(Arguments args) {
   if (const auto ok = check(args); !ok) return complain("eyepoint-host", ok.error());
+  const auto asks = cigi::parseAsks(args.ask);
+  if (!asks) return complain("eyepoint-host", asks.error());
+  args.plan.asks = *asks;
+  args.plan.firstFrame = args.synchronous ? 1 : 0;
   const auto endpoint = parseEndpoint(args.to, kLoopbackAddress, "--to");
   if (!endpoint) return complain("eyepoint-host", endpoint.error());
+  if (const auto ok = checkChannels(args, *endpoint); !ok) return complain("eyepoint-host", ok.error());
   auto flight = flightOf(args);
   if (!flight) return complain("eyepoint-host", flight.error());
   const auto socket = UdpSocket::connectTo(*endpoint, args.interface);
   if (!socket) return complain("eyepoint-host", socket.error());
   std::optional<cigi::ReplyListener> replies;
-  if (speaksCigi(args)) replies.emplace(*socket);
+  const auto channels = static_cast<size_t>(args.channels.value_or(1));
+  if (speaksCigi(args))
+    replies.emplace(*socket, channels, args.printReplies ? printReplies : cigi::ReplyListener::OnMessage());
 
   if (!args.pose.empty()) args.send.loop = true;  // one pose is a round of one packet
   spdlog::info("sending {} to {}:{}", args.protocol, endpoint->address, endpoint->port);
