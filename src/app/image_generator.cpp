@@ -58,17 +58,26 @@ Sources Sources::of(std::unique_ptr<StateSource> source) {
 }
 
 SourceSample Sources::sample(double timeS) {
-  SourceSample newest;
+  SourceSample newest, spoken;
   HostCounts counts;
   bool finished = true;
   for (const auto& source : sources_) {
-    const SourceSample sample = source->sample(timeS);
+    SourceSample sample = source->sample(timeS);
     counts.packets += sample.counts.packets;
     counts.rejected += sample.counts.rejected;
     counts.lost += sample.counts.lost;
     finished = finished && sample.finished;
-    if (sample.valid && (!newest.valid || sample.arrivedNs > newest.arrivedNs)) newest = sample;
+    if (sample.arrivedNs > spoken.arrivedNs) spoken = sample;
+    if (sample.valid && (!newest.valid || sample.arrivedNs > newest.arrivedNs)) newest = std::move(sample);
   }
+  if (spoken.arrivedNs > newest.arrivedNs) {  // without a place: its visibility is that of the last one
+    newest.edges = spoken.edges;
+    newest.julianDayUtc = spoken.julianDayUtc;
+    newest.hostFrame = spoken.hostFrame;
+    newest.arrivedNs = spoken.arrivedNs;
+    newest.visibilityM = visibilityM_;
+  }
+  visibilityM_ = newest.visibilityM;
   newest.counts = counts;
   newest.finished = finished;
   return newest;
@@ -227,11 +236,11 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   if (host.valid) hostPose_ = host.pose;
   finished_ = host.finished;
   const double nowS = sources_.anyLive() ? static_cast<double>(beganNs) * 1e-9 : timeS;
-  const bool heard = host.valid || !sources_.anyLive();  // until then the eye waits over the terrain's middle
-  SourceSample observed = host;
-  if (host.carriedToNs != 0) observed.arrivedNs = host.carriedToNs;  // the moment that the pose is of
-  if (heard) tracker_.observe(observed, hostPose_, nowS);
-  const DisplayedEye eye = heard ? tracker_.eye() : DisplayedEye{.pose = hostPose_};
+  // Until a host has said a place the eye waits over the terrain's middle, and afterwards where it was shown last.
+  const bool heard = host.valid || !sources_.anyLive();
+  if (heard) tracker_.observe(host, hostPose_, nowS);
+  if (heard || number_ == 0) eye_ = heard ? tracker_.eye() : DisplayedEye{.pose = hostPose_};
+  const DisplayedEye& eye = eye_;
   pose_ = channelPose(eye.pose, options_);
   view_ = currentView(pose_, host.edges);
   const Lighting lighting = currentLighting(host);

@@ -16,7 +16,8 @@
 
 namespace eye {
 
-// Several hosts: the one that spoke last gives the state; before any has spoken, the first that needs no packets.
+// Several hosts: the one that spoke last gives the state; before any has spoken, the first that needs no packets. What
+// a host says of view, sky and air counts whether it says a place or not.
 class Sources {
  public:
   static Result<Sources> open(const std::vector<std::string>& urls, const OpenProbe& openProbe);
@@ -32,6 +33,7 @@ class Sources {
  private:
   std::vector<std::unique_ptr<StateSource>> sources_;
   std::string description_;
+  std::optional<double> visibilityM_;  // where the newest pose was
 };
 
 // What of a drawn chunk shows in the picture.
@@ -87,6 +89,7 @@ class ImageGenerator {
 
   uint64_t number_ = 0;
   Pose hostPose_, pose_;  // as the host says; of the view that is drawn
+  DisplayedEye eye_;      // of the last frame
   bool finished_ = false;
   View view_;
   Selection selection_;

@@ -55,7 +55,9 @@ void Overlay::draw(const std::string& device, const std::string& source) const {
   if (r.hostAgeMs >= 0)
     line("host", "%.0f packets, %.0f rejected, age %.1f ms", static_cast<double>(r.host.packets),
          static_cast<double>(r.host.rejected), r.hostAgeMs);
-  if (r.hostAgeMs >= 0) line("shown", "%.1f ms behind", r.eye.delayMs);
+  if (r.hostAgeMs >= 0)
+    line("shown", r.eye.stampedByHost ? "%.1f ms behind; jitter %.1f, host's clock" : "%.1f ms behind; jitter %.1f",
+         r.eye.delayMs, r.eye.jitterMs);
   if (r.eye.silent) ImGui::TextColored(ImVec4(1, 0.7f, 0.2f, 1), "The host is silent: the eye waits");
   ImGui::TextDisabled("F1 statistics  F2 freeze culling  F3 depth map\nF4 level, fate  F11 full screen  Esc quit");
   ImGui::End();

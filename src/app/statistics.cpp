@@ -90,6 +90,8 @@ Json jsonOf(const FrameRecord& r) {
                 {"lost", r.host.lost},
                 {"frame", r.hostFrame ? Json(*r.hostFrame) : Json(nullptr)},
                 {"delay_ms", r.eye.delayMs},
+                {"jitter_ms", r.eye.jitterMs},
+                {"stamps", r.hostAgeMs < 0 ? Json(nullptr) : Json(r.eye.stampedByHost ? "host" : "arrival")},
                 {"silent", r.eye.silent},
                 {"age_ms", r.hostAgeMs < 0 ? Json(nullptr) : Json(r.hostAgeMs)}}}};
 }

@@ -6,6 +6,7 @@
 
 #include "link/angles.h"
 #include "link/eye_chain.h"
+#include "predict/attitude_filter.h"
 
 namespace eye {
 namespace {
@@ -16,8 +17,6 @@ constexpr double kRadPerDeg = std::numbers::pi / 180;
 // A wider circle, as long as the predictor does not know the velocity or after seconds of a reversal, would ask for
 // more of the finest ground than can be loaded, and the nearest not first.
 constexpr double kGreatestRadiusM = 2000;
-// The eye goes this long without a packet, then it waits.
-constexpr double kFarthestExtrapolationS = 0.2;
 // Up to so much jitter the filter foresees as smoothly as it looks back (30 ms: 0.17 m of stutter at 150 m/s either
 // way), and each millisecond of delay would be one of transport delay. What is beyond it is waited for.
 constexpr double kForeseenJitterS = 0.05, kLongestDelayS = 0.1;
@@ -27,6 +26,8 @@ constexpr double kStandsStillS = 0.25;
 constexpr int kFewestObservations = 12;
 // Farther from the newest packet than twice what its age explains, and this, the filter is wrong.
 constexpr double kBelievableM = 10;
+// Slower, and where the aircraft is says nothing of when it was there.
+constexpr double kSlowMS = 5;
 constexpr double kSmoothing = 0.05;  // a frame's share in the mean frame rate and speed
 
 double halfFovRad(const Frustum& frustum) {
@@ -63,29 +64,76 @@ void ViewpointTracker::observe(const SourceSample& host, const Pose& pose, doubl
   nowS_ = nowS;
   live_ = host.live && host.valid;
   jumped_ = false;
-  if (live_ && host.arrivedNs == arrivedNs_) return;  // nothing new
-  arrivedNs_ = host.arrivedNs;
-  observePose(pose, live_ ? static_cast<double>(host.arrivedNs) * 1e-9 : nowS);
+  if (!live_) {
+    observePose(pose, nowS);
+    measureSpeed(nowS);
+    return;
+  }
+
+  atS_ = static_cast<double>(host.atNs) * 1e-9;
+  arrivedS_ = static_cast<double>(host.arrivedNs) * 1e-9;
+  carryOnS_ = static_cast<double>(host.carryOnNs) * 1e-9;
+  stampedByHost_ = host.stampedByHost;
+  motion_ = host.motion;
+  for (const StampedPose& heard : host.heard) hear(heard);
+  // One that its host's rates move is seen anew in each frame.
+  const double shownS = motion_ ? std::min(nowS, heldS()) : atS_;
+  if (motion_) observePose(pose, shownS);
+  pose_ = pose;
+  measureSpeed(shownS);
 }
 
-// `atS`: when the pose came, on the clock of the frames.
+void ViewpointTracker::hear(const StampedPose& heard) {
+  const double atS = static_cast<double>(heard.atNs) * 1e-9, arrivedS = static_cast<double>(heard.arrivedNs) * 1e-9;
+  if (stampedByHost_)
+    jitter_.heldUp(arrivedS - atS);
+  else
+    jitter_.arrived(arrivedS);
+  if (!motion_) {
+    const uint64_t restarts = restarts_;
+    observePose(heard.pose, atS);
+    if (restarts_ != restarts) history_.clear();
+  }
+  history_.add(momentOf(heard), heard.pose);
+}
+
+// From the newest pose of an earlier frame to that of this one, which was true at `atS`.
+void ViewpointTracker::measureSpeed(double atS) {
+  const bool isNew = !measuredS_ || atS > *measuredS_;
+  if (measuredS_ && isNew) {
+    const double speedMS = glm::length(eyeEcefM_ - measuredEcefM_) / (atS - *measuredS_);
+    if (speedMS < kFastestMS) speedMS_ += std::max(kSmoothing, 1.0 / ++speeds_) * (speedMS - speedMS_);
+    if (!filterRuns()) jumped_ = speedMS >= kFastestMS;
+  }
+  if (!isNew) return;
+  measuredS_ = atS;
+  measuredEcefM_ = eyeEcefM_;
+}
+
+// When the pose was true. An arrival is late by what the network held the packet up, and poses at such times would make
+// the aircraft go fast and slow; the filter's motion is even, so the moment is the one at which that passes the pose.
+double ViewpointTracker::momentOf(const StampedPose& heard) const {
+  const double atS = static_cast<double>(heard.atNs) * 1e-9;
+  if (stampedByHost_ || motion_ || sinceRestart_ < kFewestObservations) return atS;
+  const Prediction then = predictor_.at(atS);
+  const double speedMS = glm::length(then.velocityEcefMS);
+  if (!then.valid || speedMS < kSlowMS) return atS;
+  const double aheadM = glm::dot(ecefFromGeodetic(heard.pose.position) - then.ecefM, then.velocityEcefMS / speedMS);
+  return atS + std::clamp(aheadM / speedMS, -jitter_.jitterS(), jitter_.jitterS());
+}
+
+// `atS`: when the pose was true, on the clock of the frames.
 void ViewpointTracker::observePose(const Pose& pose, double atS) {
   const Vec3d eyeEcefM = ecefFromGeodetic(pose.position);
   const bool first = observations_ == 0;
   if (first || pose != pose_) changedS_ = atS;
-  jumped_ = first;
-  if (!first && atS > observedS_) {
-    const double speedMS = glm::length(eyeEcefM - eyeEcefM_) / (atS - observedS_);
-    if (speedMS < kFastestMS) speedMS_ += std::max(kSmoothing, 1.0 / observations_) * (speedMS - speedMS_);
-    if (options_.predictor == PredictorMode::none) jumped_ = speedMS >= kFastestMS;
-  }
+  jumped_ = jumped_ || first;
   ++observations_;
   pose_ = pose;
   eyeEcefM_ = eyeEcefM;
   observedS_ = atS;
-  if (options_.predictor == PredictorMode::none) return;
+  if (!filterRuns()) return;
 
-  if (live_) jitter_.observe(atS);
   ++sinceRestart_;
   predictor_.observe(atS, pose);
   if (const uint64_t restarts = predictor_.state().counts.restarts; restarts != restarts_) {
@@ -101,28 +149,66 @@ void ViewpointTracker::observePose(const Pose& pose, double atS) {
   }
 }
 
+// What is shown of a live host, and foreseen of it, is of no later moment.
+double ViewpointTracker::heldS() const {
+  return atS_ + carryOnS_;
+}
+
 // Where predictions start: now, but not beyond what is believed of a host that has fallen silent.
 double ViewpointTracker::knownS() const {
-  return live_ ? std::min(nowS_, observedS_ + kFarthestExtrapolationS) : nowS_;
+  return live_ ? std::min(nowS_, heldS()) : nowS_;
 }
 
 bool ViewpointTracker::isSilent() const {
-  return live_ && nowS_ - observedS_ > kFarthestExtrapolationS;
+  return live_ && nowS_ - arrivedS_ > carryOnS_;
+}
+
+double ViewpointTracker::delayS() const {
+  return options_.hostDelay == HostDelayMode::fixed
+             ? options_.hostDelayMs * 1e-3
+             : std::clamp(jitter_.jitterS() - kForeseenJitterS, 0.0, kLongestDelayS);
 }
 
 DisplayedEye ViewpointTracker::eye() const {
-  DisplayedEye eye{pose_};
-  eye.silent = isSilent();
-  if (!live_ || options_.hostDelay == HostDelayMode::off) return eye;
-  if (observedS_ - changedS_ > kStandsStillS || sinceRestart_ < kFewestObservations) return eye;
-  const double delayS = options_.hostDelay == HostDelayMode::fixed
-                            ? options_.hostDelayMs * 1e-3
-                            : std::clamp(jitter_.jitterS() - kForeseenJitterS, 0.0, kLongestDelayS);
-  const Prediction prediction = predictor_.at(std::min(nowS_ - delayS, knownS()));
-  const double ageS = std::abs(nowS_ - delayS - changedS_);
+  DisplayedEye eye{.pose = pose_, .silent = isSilent()};
+  if (!live_) return eye;
+  eye.jitterMs = jitter_.jitterS() * 1e3;
+  eye.stampedByHost = stampedByHost_;
+  if (options_.hostDelay == HostDelayMode::off) return eye;
+  const double behindS = delayS(), shownS = std::min(nowS_ - behindS, heldS());
+  eye.delayMs = behindS * 1e3;
+  if (behindS == 0)
+    eye.pose = foreseen(shownS).value_or(pose_);
+  else if (const auto between = history_.at(shownS))
+    eye.pose = *between;
+  else
+    eye.pose = carriedOn(shownS);
+  return eye;
+}
+
+// By the filter; nothing where the newest pose is nearer to the truth: of an aircraft that stands, of one just heard
+// of, and where the filter is wrong.
+std::optional<Pose> ViewpointTracker::foreseen(double atS) const {
+  if (observedS_ - changedS_ > kStandsStillS || sinceRestart_ < kFewestObservations) return std::nullopt;
+  const Prediction prediction = predictor_.at(atS);
+  const double ageS = std::abs(atS - changedS_);
   const double offM = glm::length(prediction.ecefM - eyeEcefM_);
-  if (!prediction.valid || offM > 2 * glm::length(prediction.velocityEcefMS) * ageS + kBelievableM) return eye;
-  return {prediction.pose, delayS * 1e3, eye.silent};
+  if (!prediction.valid || offM > 2 * glm::length(prediction.velocityEcefMS) * ageS + kBelievableM) return std::nullopt;
+  return prediction.pose;
+}
+
+// To a moment that no pose brackets. Begins at the newest pose, so that the eye goes on from where it was interpolated
+// to.
+Pose ViewpointTracker::carriedOn(double toS) const {
+  if (history_.empty()) return pose_;
+  const TrackSample& newest = history_.newest();
+  if (toS <= newest.timeS) return foreseen(toS).value_or(newest.pose);  // poses too far apart
+  if (motion_) return motion_(static_cast<int64_t>(toS * 1e9));
+  if (!foreseen(toS)) return newest.pose;
+  const Prediction from = predictor_.at(newest.timeS), to = predictor_.at(toS);
+  const Geodetic position = geodeticFromEcef(ecefFromGeodetic(newest.pose.position) + to.ecefM - from.ecefM);
+  const glm::dquat turn = glm::conjugate(attitudeOf(from.pose)) * attitudeOf(to.pose);
+  return poseWithAttitude(position, glm::normalize(attitudeOf(newest.pose) * turn));
 }
 
 ViewpointAhead ViewpointTracker::ahead(const Vec3d& nowForwardEcef, double inS) const {

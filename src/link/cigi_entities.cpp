@@ -5,20 +5,11 @@
 namespace eye::cigi {
 namespace {
 
-// A network that holds a datagram back for longer than this many frames has lost it; a step back by more is a host
-// that begins anew.
-constexpr uint32_t kLateFrames = 100;
-
 Vec3d radFromDegrees(double x, double y, double z) {
   return {radFromDeg(x), radFromDeg(y), radFromDeg(z)};
 }
 
 }  // namespace
-
-bool isLate(uint32_t frame, uint32_t newest) {
-  const uint32_t behind = newest - frame;
-  return behind > 0 && behind <= kLateFrames;
-}
 
 EntityTable::Record* EntityTable::recordOf(uint16_t id) {
   if (const auto found = records_.find(id); found != records_.end()) return &found->second;
@@ -60,7 +51,7 @@ void EntityTable::take(const Entity& entity, const Stamp& stamp) {
   Record* const record = recordOf(entity.id);
   if (record == nullptr) return;
   if (entity.traits) record->traits = *entity.traits;
-  if (!entity.place || (record->place && isLate(stamp.hostFrame, record->placedFrame))) return;
+  if (!entity.place) return;
   const EntityPlace& place = *entity.place;
   ChainLink link;
   if (const auto* geodetic = std::get_if<Geodetic>(&place.position))
@@ -68,7 +59,7 @@ void EntityTable::take(const Entity& entity, const Stamp& stamp) {
   else if (const auto* offset = std::get_if<BodyOffset>(&place.position))
     link.position = Vec3d(offset->xM, offset->yM, offset->zM);
   link.yawDeg = place.yawDeg, link.pitchDeg = place.pitchDeg, link.rollDeg = place.rollDeg;
-  link.atNs = stamp.arrivedNs;
+  link.atNs = stamp.atNs;
   record->place = link;
   record->parentId = place.parentId;
   record->placedFrame = stamp.hostFrame;
@@ -79,7 +70,7 @@ void EntityTable::take(const Velocity& velocity, const Stamp& stamp) {
   if (found == records_.end() || velocity.partId) return;  // of parts there are none to turn
   Record& record = found->second;
   // The place of the same frame is where the motion begins.
-  if (record.placedFrame != stamp.hostFrame) settle(record, stamp.arrivedNs);
+  if (record.placedFrame != stamp.hostFrame) settle(record, stamp.atNs);
   record.motion.velocityInBody = velocity.inBodyFrame;
   record.motion.velocityMS = {velocity.xMS, velocity.yMS, velocity.zMS};
   record.motion.turnRateRadS = radFromDegrees(velocity.rollDegS, velocity.pitchDegS, velocity.yawDegS);
@@ -89,7 +80,7 @@ void EntityTable::take(const Acceleration& acceleration, const Stamp& stamp) {
   const auto found = records_.find(acceleration.entityId);
   if (found == records_.end() || acceleration.partId) return;
   Record& record = found->second;
-  if (record.placedFrame != stamp.hostFrame) settle(record, stamp.arrivedNs);
+  if (record.placedFrame != stamp.hostFrame) settle(record, stamp.atNs);
   record.motion.accelerationInBody = acceleration.inBodyFrame;
   record.motion.accelerationMS2 = {acceleration.xMS2, acceleration.yMS2, acceleration.zMS2};
   record.motion.turnAccelerationRadS2 =

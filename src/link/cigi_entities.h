@@ -13,10 +13,10 @@ namespace eye::cigi {
 // A full exercise has some hundreds; what is beyond is counted and not kept.
 inline constexpr size_t kMaxEntities = 1024;
 
-// When a packet was sent and when it came.
+// Of which host frame a packet is, and when what it says was true. Packets come in the order of their frames.
 struct Stamp {
   uint32_t hostFrame = 0;
-  int64_t arrivedNs = 0;
+  int64_t atNs = 0;
 };
 
 class EntityTable {
@@ -49,8 +49,5 @@ class EntityTable {
   std::unordered_map<uint16_t, Record> records_;
   uint64_t turnedAway_ = 0;
 };
-
-// True when `frame` is one of the hundred before `newest`: sent earlier and overtaken, or sent again.
-bool isLate(uint32_t frame, uint32_t newest);
 
 }  // namespace eye::cigi

@@ -24,7 +24,7 @@ void Session::ask(const GroundRequest& request, const Stamp& stamp) {
   const uint8_t everyFrames = std::visit([](const auto& r) { return r.everyFrames; }, request);
   if (everyFrames > 0 && repeating_.size() < kMaxRepeating)
     repeating_.push_back({request, everyFrames, stamp.hostFrame});
-  if (questions_.size() < kMaxQuestions) questions_.push_back(resolved(request, stamp.hostFrame, stamp.arrivedNs));
+  if (questions_.size() < kMaxQuestions) questions_.push_back(resolved(request, stamp.hostFrame, stamp.atNs));
 }
 
 void Session::repeatQuestions(int64_t nowNs) {
@@ -41,7 +41,6 @@ std::vector<GroundQuestion> Session::takeQuestions() {
 
 std::optional<Placed> Session::entityPlace(uint16_t id, int64_t nowNs) const {
   EyeChain chain;
-  chain.untilNs = nowNs;
   if (!entities_.addChain(id, control_.smoothing, control_.hostFrame, chain)) return std::nullopt;
   return placeOf(chain, nowNs);
 }

@@ -9,12 +9,31 @@
 namespace eye::cigi {
 namespace {
 
-// How long what moves goes on moving while its host is silent: a few lost datagrams.
-constexpr int64_t kCarryOnNs = 200'000'000;
 // More frames than this missing at once is a host that has begun anew.
 constexpr uint32_t kMaxGap = 10'000;
+// A network that holds a datagram back for longer than this many frames has lost it; a step back by more is a host
+// that begins anew.
+constexpr uint32_t kLateFrames = 100;
 // So many frames behind one another that are all older than the newest are no overtaken ones: the host counts anew.
 constexpr int kBegunAnew = 10;
+
+// `frame` was sent before `newest` and overtaken, or is sent again.
+bool isLate(uint32_t frame, uint32_t newest) {
+  const uint32_t behind = newest - frame;
+  return behind > 0 && behind <= kLateFrames;
+}
+
+// Of a message that was overtaken: what is asked once changes nothing.
+bool isAskedOnce(const Packet& packet) {
+  return std::visit(
+      [](const auto& p) {
+        if constexpr (requires { p.everyFrames; })
+          return p.everyFrames == 0;
+        else
+          return false;
+      },
+      packet);
+}
 
 }  // namespace
 
@@ -34,7 +53,6 @@ void Session::reset() {
   eyeEntityId_ = 0;
   eyeOffsetM_ = {};
   eyeYawDeg_ = eyePitchDeg_ = eyeRollDeg_ = 0;
-  viewTold_ = false;
   edges_ = {};
   sky_ = {};
   air_ = {};
@@ -46,7 +64,8 @@ void Session::reset() {
   seen_.fill(std::nullopt);
 }
 
-void Session::header(const IgControl& control, const std::string& name) {
+// False when the frame was overtaken.
+bool Session::header(const IgControl& control, const std::string& name) {
   if (started_ && isLate(control.hostFrame, control_.hostFrame)) {
     lateRun_ = lateRun_ > 0 && control.hostFrame == newestLate_ + 1 ? lateRun_ + 1 : 1;
     newestLate_ = control.hostFrame;
@@ -59,7 +78,7 @@ void Session::header(const IgControl& control, const std::string& name) {
     // Overtaken, not lost; unless it has come before.
     if (lostFrames_ > 0 && seen_[control.hostFrame % seen_.size()] != control.hostFrame) --lostFrames_;
     seen_[control.hostFrame % seen_.size()] = control.hostFrame;
-    return;
+    return false;
   }
   if (started_ && gap > 1 && gap <= kMaxGap) lostFrames_ += gap - 1;
   const bool wasOperating = control_.mode != IgMode::standby;
@@ -74,21 +93,26 @@ void Session::header(const IgControl& control, const std::string& name) {
   control_ = control;
   seen_[control.hostFrame % seen_.size()] = control.hostFrame;
   started_ = true;
+  return true;
 }
 
-void Session::take(const Message& message, int64_t nowNs, const std::string& name) {
+bool Session::take(const Message& message, int64_t atNs, const std::string& name) {
   const auto* control = message.packets.empty() ? nullptr : std::get_if<IgControl>(&message.packets.front());
-  if (control == nullptr) return;  // without a header that is believed, nothing says of which frame it is
+  if (control == nullptr) return false;  // without a header that is believed, nothing says of which frame it is
   const bool isNewFrame = !started_ || control->hostFrame != control_.hostFrame;
-  header(*control, name);
-  arrivedNs_ = nowNs;
-  if (control_.mode == IgMode::standby) return;
-  const Stamp stamp{control->hostFrame, nowNs};
-  for (const Packet& p : message.packets) packet(p, stamp, name);
-  if (isNewFrame) repeatQuestions(nowNs);
+  const bool isInOrder = header(*control, name);
+  const bool isStandby = control_.mode == IgMode::standby;
+  const Stamp stamp{control->hostFrame, isInOrder ? atNs : atNs_};
+  for (const Packet& p : message.packets)
+    if (!isStandby && (isInOrder || isAskedOnce(p))) packet(p, stamp, name);
+  if (!isInOrder) return false;
+  atNs_ = atNs;
+  if (isStandby) return true;
+  if (isNewFrame) repeatQuestions(atNs);
   if (entities_.turnedAway() > 0)
     remark(name, Remark::tooMany,
            fmt::format("the host has more than {} entities; those beyond are not kept", kMaxEntities));
+  return true;
 }
 
 void Session::packet(const Packet& packet, const Stamp& stamp, const std::string& name) {
@@ -99,9 +123,9 @@ void Session::packet(const Packet& packet, const Stamp& stamp, const std::string
   }
   if (const auto* velocity = std::get_if<Velocity>(&packet)) entities_.take(*velocity, stamp);
   if (const auto* acceleration = std::get_if<Acceleration>(&packet)) entities_.take(*acceleration, stamp);
-  if (const auto* control = std::get_if<ViewControl>(&packet)) take(*control, stamp);
+  if (const auto* control = std::get_if<ViewControl>(&packet)) take(*control);
   if (const auto* definition = std::get_if<ViewDefinition>(&packet)) take(*definition, name);
-  if (const auto* sphere = std::get_if<CelestialSphere>(&packet)) take(*sphere, stamp.arrivedNs);
+  if (const auto* sphere = std::get_if<CelestialSphere>(&packet)) take(*sphere, stamp.atNs);
   if (const auto* atmosphere = std::get_if<Atmosphere>(&packet))
     air_.visibilityM =
         atmosphere->visibilityM >= kMinVisibilityM ? std::optional(atmosphere->visibilityM) : std::nullopt;
@@ -111,11 +135,9 @@ void Session::packet(const Packet& packet, const Stamp& stamp, const std::string
   if (const auto* vector = std::get_if<SightVectorRequest>(&packet)) ask(*vector, stamp);
 }
 
-void Session::take(const ViewControl& control, const Stamp& stamp) {
+void Session::take(const ViewControl& control) {
   const bool isOurs = control.groupId == 0 ? control.viewId == viewId_ : control.groupId == groupId_;
-  if (!isOurs || (viewTold_ && isLate(stamp.hostFrame, viewFrame_))) return;
-  viewTold_ = true;
-  viewFrame_ = stamp.hostFrame;
+  if (!isOurs) return;
   eyeEntityId_ = control.entityId;
   eyeOffsetM_ = {control.xM.value_or(eyeOffsetM_.x), control.yM.value_or(eyeOffsetM_.y),
                  control.zM.value_or(eyeOffsetM_.z)};
@@ -148,17 +170,17 @@ void Session::take(const ViewDefinition& definition, const std::string& name) {
   update(edges_.nearM, definition.nearM);
 }
 
-void Session::take(const CelestialSphere& sphere, int64_t nowNs) {
+void Session::take(const CelestialSphere& sphere, int64_t atNs) {
   if (sphere.dateTime) {
     const DateTime& t = *sphere.dateTime;
     const double day = t.day + (t.hour + (t.minute + t.second / 60) / 60) / 24;
     sky_.julianDayUtc = julianDay(t.year, t.month, day);
-    sky_.atNs = nowNs;
+    sky_.atNs = atNs;
   } else if (sky_.clockRuns && !sphere.clockRuns) {
-    sky_.julianDayUtc = julianDayAt(sky_, nowNs);
-    sky_.atNs = nowNs;
+    sky_.julianDayUtc = julianDayAt(sky_, atNs);
+    sky_.atNs = atNs;
   } else if (!sky_.clockRuns) {
-    sky_.atNs = nowNs;
+    sky_.atNs = atNs;
   }
   sky_.clockRuns = sphere.clockRuns;
 }
@@ -180,19 +202,17 @@ void Session::take(const Weather& weather) {
 
 Snapshot Session::snapshot() const {
   Snapshot snapshot;
-  snapshot.arrivedNs = arrivedNs_;
   snapshot.hostFrame = control_.hostFrame;
   snapshot.edges = edges_;
   snapshot.sky = sky_;
   snapshot.air = air_;
   if (!entities_.addChain(eyeEntityId_, control_.smoothing, control_.hostFrame, snapshot.eye)) snapshot.eye.count = 0;
-  snapshot.eye.untilNs = arrivedNs_ + kCarryOnNs;
   const bool isTurned = eyeYawDeg_ != 0 || eyePitchDeg_ != 0 || eyeRollDeg_ != 0;
   if (snapshot.eye.count == 0 || (eyeOffsetM_ == Vec3d{} && !isTurned)) return snapshot;
   ChainLink eye;
   eye.position = eyeOffsetM_;
   eye.yawDeg = eyeYawDeg_, eye.pitchDeg = eyePitchDeg_, eye.rollDeg = eyeRollDeg_;
-  eye.atNs = arrivedNs_;
+  eye.atNs = atNs_;
   if (!snapshot.eye.add(eye)) snapshot.eye.count = 0;
   return snapshot;
 }

@@ -22,7 +22,6 @@ struct Sky {
 
 struct Snapshot {
   EyeChain eye;
-  int64_t arrivedNs = 0;  // of the newest message
   uint32_t hostFrame = 0;
   ViewEdges edges;
   Sky sky;
@@ -37,8 +36,9 @@ class Session {
  public:
   explicit Session(uint16_t viewId) : viewId_(viewId) {}
 
-  // `name`: of the link, for remarks in the log.
-  void take(const Message& message, int64_t nowNs, const std::string& name);
+  // `atNs`: when what the message says was true; `name`: of the link, for remarks in the log. False: a newer frame has
+  // overtaken the message, and nothing of it is taken but its questions that are asked once.
+  bool take(const Message& message, int64_t atNs, const std::string& name);
   // Forgets everything but what is counted: for a new host.
   void reset();
 
@@ -50,11 +50,11 @@ class Session {
   std::vector<GroundQuestion> takeQuestions();
 
  private:
-  void header(const IgControl& control, const std::string& name);
+  bool header(const IgControl& control, const std::string& name);
   void packet(const Packet& packet, const Stamp& stamp, const std::string& name);
-  void take(const ViewControl& control, const Stamp& stamp);
+  void take(const ViewControl& control);
   void take(const ViewDefinition& definition, const std::string& name);
-  void take(const CelestialSphere& sphere, int64_t nowNs);
+  void take(const CelestialSphere& sphere, int64_t atNs);
   void take(const Weather& weather);
   // cigi_questions.cpp
   void ask(const GroundRequest& request, const Stamp& stamp);
@@ -74,14 +74,12 @@ class Session {
   uint32_t newestLate_ = 0;                        // of the frames that came behind a newer one
   int lateRun_ = 0;                                // how many of them behind one another, each the next of the last
   std::array<std::optional<uint32_t>, 128> seen_;  // host frames by their last bits: more than can be late
-  int64_t arrivedNs_ = 0;
+  int64_t atNs_ = 0;                               // of the newest frame
 
   uint8_t groupId_ = 0;  // of the view; 0: none
   uint16_t eyeEntityId_ = 0;
   Vec3d eyeOffsetM_{};
   double eyeYawDeg_ = 0, eyePitchDeg_ = 0, eyeRollDeg_ = 0;
-  uint32_t viewFrame_ = 0;
-  bool viewTold_ = false;
   ViewEdges edges_;
   Sky sky_;
   Air air_;

@@ -17,9 +17,9 @@ Geodetic movedBy(const Geodetic& from, const Vec3d& nedM) {
   return to;
 }
 
-ChainLink atMoment(const EyeChain& chain, const ChainLink& link, int64_t nowNs) {
+ChainLink atMoment(const ChainLink& link, int64_t nowNs) {
   if (!link.carriedOn || !link.motion.any()) return link;
-  const int64_t sinceNs = std::min(nowNs, chain.untilNs) - link.atNs;
+  const int64_t sinceNs = nowNs - link.atNs;
   return sinceNs > 0 ? carriedOn(link, static_cast<double>(sinceNs) * 1e-9) : link;
 }
 
@@ -91,13 +91,13 @@ ChainLink carriedOn(const ChainLink& link, double seconds) {
 
 std::optional<Placed> placeOf(const EyeChain& chain, int64_t nowNs) {
   if (chain.count == 0) return std::nullopt;
-  const ChainLink root = atMoment(chain, chain.links[0], nowNs);
+  const ChainLink root = atMoment(chain.links[0], nowNs);
   const auto* place = std::get_if<Geodetic>(&root.position);
   if (place == nullptr) return std::nullopt;
   Placed placed{ecefFromGeodetic(*place),
                 ecefFromNed(place->latDeg, place->lonDeg) * parentFromBody(root.yawDeg, root.pitchDeg, root.rollDeg)};
   for (size_t i = 1; i < chain.count; ++i) {
-    const ChainLink link = atMoment(chain, chain.links[i], nowNs);
+    const ChainLink link = atMoment(chain.links[i], nowNs);
     const auto* offsetM = std::get_if<Vec3d>(&link.position);
     if (offsetM == nullptr) return std::nullopt;
     placed.ecefM += placed.ecefFromBody * *offsetM;
@@ -106,16 +106,15 @@ std::optional<Placed> placeOf(const EyeChain& chain, int64_t nowNs) {
   return placed;
 }
 
-std::optional<int64_t> carriedTo(const EyeChain& chain, int64_t nowNs) {
+bool isCarriedOn(const EyeChain& chain) {
   const auto end = chain.links.begin() + static_cast<std::ptrdiff_t>(chain.count);
-  const bool moves =
-      std::any_of(chain.links.begin(), end, [](const ChainLink& link) { return link.carriedOn && link.motion.any(); });
-  return moves ? std::optional(std::min(nowNs, chain.untilNs)) : std::nullopt;
+  return std::any_of(chain.links.begin(), end,
+                     [](const ChainLink& link) { return link.carriedOn && link.motion.any(); });
 }
 
 std::optional<Pose> poseOf(const EyeChain& chain, int64_t nowNs) {
   if (chain.count == 1) {
-    const ChainLink root = atMoment(chain, chain.links[0], nowNs);
+    const ChainLink root = atMoment(chain.links[0], nowNs);
     const auto* place = std::get_if<Geodetic>(&root.position);
     if (place == nullptr) return std::nullopt;
     Pose pose{*place, root.yawDeg, root.pitchDeg, root.rollDeg};

@@ -32,7 +32,6 @@ inline constexpr size_t kMaxChain = 16;
 struct EyeChain {
   std::array<ChainLink, kMaxChain> links;
   size_t count = 0;                 // 0: not known where the eye is
-  int64_t untilNs = 0;              // nothing is carried on beyond this moment
   bool add(const ChainLink& link);  // false when it is full
 };
 
@@ -52,8 +51,8 @@ struct Placed {
 };
 // Where the chain's last body is. `nowNs`: a clock with that of the links.
 std::optional<Placed> placeOf(const EyeChain& chain, int64_t nowNs);
-// The moment that the chain's pose at `nowNs` is of, where something in it moves on by itself.
-std::optional<int64_t> carriedTo(const EyeChain& chain, int64_t nowNs);
+// Something in it moves on by itself.
+bool isCarriedOn(const EyeChain& chain);
 // The same as a pose. A chain of one link at its own moment comes back as it was given.
 std::optional<Pose> poseOf(const EyeChain& chain, int64_t nowNs);
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "geo/pose.h"
 
@@ -17,20 +18,32 @@ struct HostCounts {
   uint64_t lost = 0;      // gaps in the protocol's own numbering, where it has one
 };
 
-// A latest-value mailbox: one writer (the link thread), one reader (the frame). A state has `arrivedNs`, which tells it
-// from the one before.
+// A pose that a host has told, on this machine's clock.
+struct StampedPose {
+  Pose pose;
+  int64_t atNs = 0;       // when it was true, as far as is known
+  int64_t arrivedNs = 0;  // when it came
+};
+
+// More poses than this between two frames are a flood or a frame of seconds: the oldest are dropped.
+inline constexpr size_t kMaxHeard = 64;
+
+// One writer (the link thread), one reader (the frame): the latest state, and the poses that came since the last look.
+// A state has `arrivedNs`, which tells it from the one before.
 template <class State>
 class Mailbox {
  public:
   struct Snapshot {
     std::optional<State> state;
     HostCounts counts;
+    std::vector<StampedPose> heard;  // the oldest first
   };
   // State and counts together: whoever sees a packet counted also sees what it said.
-  void put(const std::optional<State>& state, const HostCounts& counts) {
+  void put(const std::optional<State>& state, const std::vector<StampedPose>& heard, const HostCounts& counts) {
     {
       const std::lock_guard lock(mutex_);
       latest_.counts = counts;
+      addHeard(heard);
       if (!state || (latest_.state && state->arrivedNs == latest_.state->arrivedNs)) return;
       latest_.state = state;
       isNew_ = true;
@@ -40,7 +53,9 @@ class Mailbox {
   Snapshot take() {
     const std::lock_guard lock(mutex_);
     isNew_ = false;
-    return latest_;
+    Snapshot snapshot = latest_;
+    latest_.heard.clear();
+    return snapshot;
   }
   // Waits for a state that has not been taken; false after the time.
   bool await(int timeoutMs) {
@@ -49,6 +64,12 @@ class Mailbox {
   }
 
  private:
+  void addHeard(const std::vector<StampedPose>& heard) {
+    auto& all = latest_.heard;
+    all.insert(all.end(), heard.begin(), heard.end());
+    if (all.size() > kMaxHeard) all.erase(all.begin(), all.end() - static_cast<std::ptrdiff_t>(kMaxHeard));
+  }
+
   std::mutex mutex_;
   std::condition_variable came_;
   Snapshot latest_;

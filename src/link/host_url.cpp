@@ -80,12 +80,18 @@ Result<AllowList> AllowList::of(const HostUrl& url) {
   }
 }
 
+AllowList AllowList::only(const Peer& sender) {
+  AllowList list;
+  list.addresses_.push_back(sender.address);
+  return list;
+}
+
 bool AllowList::allows(const Peer& sender) const {
   return addresses_.empty() || std::find(addresses_.begin(), addresses_.end(), sender.address) != addresses_.end();
 }
 
 tl::unexpected<Error> notAllowed(const Peer& sender) {
-  return fail(ErrorKind::badData, fmt::format("{} is not among the addresses of ?allow", toText(sender)));
+  return fail(ErrorKind::badData, fmt::format("{} is not among the addresses that are heard (?allow)", toText(sender)));
 }
 
 }  // namespace eye

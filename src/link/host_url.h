@@ -32,6 +32,7 @@ Result<UdpSocket> listenOn(const HostUrl& url);
 class AllowList {
  public:
   static Result<AllowList> of(const HostUrl& url);
+  static AllowList only(const Peer& sender);  // this address
   bool allows(const Peer& sender) const;
 
  private:

@@ -25,11 +25,18 @@ LinkThread::LinkThread(const UdpSocket& socket, LinkProtocol& protocol, std::str
       name_(std::move(name)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
+void LinkThread::stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
 void LinkThread::run(const std::stop_token& stop) {
   nameThread("link");
   while (!stop.stop_requested()) {
     const size_t taken = socket_.wait(kLinkPollMs) ? drain() : 0;
-    protocol_.publish(counts_, monotonicNs());
+    const int64_t nowNs = monotonicNs();
+    protocol_.publish(counts_, nowNs);
+    if (const auto outgoing = protocol_.due(nowNs)) (void)socket_.sendTo(outgoing->datagram, outgoing->receiver);
     if (taken > kCalmDatagrams && taken < kBatchDatagrams) std::this_thread::sleep_for(kGather);
   }
 }

@@ -11,6 +11,12 @@
 
 namespace eye {
 
+// What is to be sent.
+struct Outgoing {
+  Peer receiver;
+  std::vector<std::byte> datagram;
+};
+
 // What a protocol makes of datagrams. Runs on the link thread.
 class LinkProtocol {
  public:
@@ -19,14 +25,18 @@ class LinkProtocol {
   virtual Result<void> take(std::span<const std::byte> datagram, const Peer& sender, int64_t nowNs) = 0;
   // After some datagrams, and at least fifty times a second: puts what there is into the mailbox.
   virtual void publish(const HostCounts& counts, int64_t nowNs) = 0;
+  // What is to be sent now, of a protocol that asks for its packets. As often as publish().
+  virtual std::optional<Outgoing> due(int64_t) { return std::nullopt; }
 };
 
-// Owns the thread from construction to destruction, which takes at most some 20 ms. Socket and protocol must live
-// longer.
+// Owns the thread from construction to stop() or destruction, which take at most some 20 ms. Socket and protocol must
+// live longer.
 class LinkThread {
  public:
   // `name`: of the link in log messages, such as its URL.
   LinkThread(const UdpSocket& socket, LinkProtocol& protocol, std::string name);
+  // Afterwards the thread has ended, and nothing more is sent or taken.
+  void stop();
 
  private:
   void run(const std::stop_token& stop);

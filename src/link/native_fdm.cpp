@@ -14,8 +14,8 @@ namespace {
 
 // Offsets of the fields that lie behind others which an image generator has no use for.
 constexpr size_t kAttitudeOffset = 36;
-constexpr size_t kVisibilityOffsetV24 = 364;
-constexpr size_t kVisibilityOffsetV25 = 508;
+constexpr size_t kClockOffsetV24 = 356, kVisibilityOffsetV24 = 364;
+constexpr size_t kClockOffsetV25 = 500, kVisibilityOffsetV25 = 508;
 static_assert(kVisibilityOffsetV24 + sizeof(float) <= kNativeFdmBytesV24);
 static_assert(kVisibilityOffsetV25 + sizeof(float) <= kNativeFdmBytesV25);
 
@@ -78,6 +78,7 @@ Result<NativeFdmState> parseNativeFdm(std::span<const std::byte> packet) {
   state.pose = {*position, degFromRad(headingRad), degFromRad(pitchRad), degFromRad(rollRad)};
   normaliseAngles(state.pose);
   const bool v24 = packet.size() == kNativeFdmBytesV24;
+  state.clockTicks = ByteReader(packet.subspan(v24 ? kClockOffsetV24 : kClockOffsetV25), std::endian::big).u32();
   state.visibilityM = saneVisibility(packet, v24 ? kVisibilityOffsetV24 : kVisibilityOffsetV25);
   return state;
 }
@@ -93,6 +94,8 @@ std::vector<std::byte> buildNativeFdm(const NativeFdmState& state) {
   writer.f32(static_cast<float>(radFromDeg(state.pose.rollDeg)));
   writer.f32(static_cast<float>(radFromDeg(state.pose.pitchDeg)));
   writer.f32(static_cast<float>(radFromDeg(state.pose.headingDeg)));
+  writer.zeros(kClockOffsetV24 - writer.size());
+  writer.u32(state.clockTicks);
   writer.zeros(kVisibilityOffsetV24 - writer.size());
   writer.f32(static_cast<float>(state.visibilityM.value_or(0)));
   writer.zeros(kNativeFdmBytesV24 - writer.size());

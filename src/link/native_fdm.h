@@ -19,6 +19,7 @@ inline constexpr size_t kNativeFdmBytesV25 =
 struct NativeFdmState {
   Pose pose;                          // in the ranges of normaliseAngles; longitude in [-180, 180]
   std::optional<double> visibilityM;  // absent when the packet's is nonsense (many hosts leave it 0)
+  uint32_t clockTicks = 0;            // cur_time: of a unit, if it runs at all, that only the host knows
 };
 
 // True when version and length are those of a native-fdm packet, whatever else is in it.
@@ -28,7 +29,7 @@ bool looksLikeNativeFdm(std::span<const std::byte> packet);
 // outside -1,000 m to 1e8 m.
 Result<NativeFdmState> parseNativeFdm(std::span<const std::byte> packet);
 
-// A version 24 packet with position, attitude and visibility; every other field is 0.
+// A version 24 packet with position, attitude, visibility and clock; every other field is 0.
 std::vector<std::byte> buildNativeFdm(const NativeFdmState& state);
 
 }  // namespace eye

@@ -19,18 +19,27 @@ struct SourceSample {
   std::optional<double> visibilityM;
   std::optional<double> julianDayUtc;  // that the host's sky shows
   ViewEdges edges;                     // what the host has said of the view
-  int64_t arrivedNs = 0;               // of the newest packet; 0 without a live host
   std::optional<uint32_t> hostFrame;   // the host's number of the newest packet, where its protocol has one
-  int64_t carriedToNs = 0;             // where the source carries the pose on by the host's rates: to this moment
-  bool live = false;                   // fed by packets
-  bool valid = false;                  // false until the first packet of a live host
-  bool finished = false;               // a recording or scenario is over (it holds its last pose)
+  // Of a live host, on this machine's clock (monotonicNs).
+  int64_t arrivedNs = 0;           // the newest packet; 0: none yet
+  int64_t atNs = 0;                // when what it says was true
+  bool stampedByHost = false;      // that is by the host's stamp, else the arrival
+  std::vector<StampedPose> heard;  // the poses that have come since the last sample, the oldest first
+  // Where the host itself says its aircraft is at a moment, by rates; empty: it says none.
+  std::function<Pose(int64_t)> motion;
+  // From `atNs` for so long anybody may carry the aircraft on, by the host's rates or own ones, and no longer: this is
+  // the one bound. Silent for longer than this, the host is said to be.
+  int64_t carryOnNs = 0;
+  bool live = false;      // fed by packets
+  bool valid = false;     // false until the first packet of a live host
+  bool finished = false;  // a recording or scenario is over (it holds its last pose)
 };
 
 // What a source is told of a frame that is complete, for those whose host wants to know.
 struct FrameReport {
-  bool overBudget = false;    // it took longer than a 60th of a second
-  bool pagingBehind = false;  // terrain that it wanted finer was not there
+  bool overBudget = false;                   // it took longer than a 60th of a second
+  bool pagingBehind = false;                 // terrain that it wanted finer was not there
+  std::optional<uint32_t> shownHostFrame{};  // of the source's own host
 };
 
 class StateSource {

@@ -127,8 +127,7 @@ Result<UdpSocket> UdpSocket::connectTo(const Endpoint& endpoint, const std::stri
     if (const auto chosen = sendGroupsBy(*fd, **interface); !chosen) return tl::unexpected(chosen.error());
   if (reach != Reach::one) {
     // A connected socket would hear nobody: who answers has an address of its own.
-    const int allowed = 1;
-    setsockopt(*fd, SOL_SOCKET, SO_BROADCAST, &allowed, sizeof(allowed));
+    udp.allowBroadcast();
     udp.everybody_ = receiver;
     return udp;
   }
@@ -188,6 +187,11 @@ SendOutcome UdpSocket::send(std::span<const std::byte> payload) const {
   // The refusal of an earlier datagram is reported instead of sending this one: try it again.
   if (errno == ECONNREFUSED && once() == whole) return SendOutcome::refused;
   return SendOutcome::failed;
+}
+
+void UdpSocket::allowBroadcast() const {
+  const int allowed = 1;
+  setsockopt(fd_, SOL_SOCKET, SO_BROADCAST, &allowed, sizeof(allowed));
 }
 
 uint16_t UdpSocket::port() const {

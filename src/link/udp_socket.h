@@ -56,6 +56,8 @@ class UdpSocket {
   SendOutcome send(std::span<const std::byte> payload) const;  // of a socket from connectTo
   // Of a listening socket, any thread. Never blocks: false when the network does not take it.
   bool sendTo(std::span<const std::byte> payload, const Peer& receiver) const;
+  // sendTo() may go to a broadcast address from now on; the system refuses it else.
+  void allowBroadcast() const;
   uint16_t port() const;  // the local one
 
  private:

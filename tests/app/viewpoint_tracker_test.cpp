@@ -6,6 +6,7 @@
 
 #include "geo/frames.h"
 #include "link/flight_plan.h"
+#include "link/host_clock.h"
 
 namespace eye {
 namespace {
@@ -22,7 +23,8 @@ FlightPath flightPath() {
 
 struct Link {
   double jitterS = 0, loss = 0;
-  double burstS = 0;  // packets wait for each other, up to this long
+  double burstS = 0;    // packets wait for each other, up to this long
+  bool stamps = false;  // with the host's time stamps
 };
 
 struct Shown {
@@ -31,8 +33,15 @@ struct Shown {
   double delayMs = 0;
 };
 
-// A 60 Hz host whose frames are not ours, packets with delays of up to `jitterS`.
-Shown fly(const Link& link, const Options& options) {
+constexpr double kEpochS = 1000;  // of the clock of arrivals and frames
+
+int64_t onClock(double s) {
+  return static_cast<int64_t>((kEpochS + s) * 1e9);
+}
+
+// A 60 Hz host whose frames are not ours, packets with delays of up to `jitterS`, so that they overtake one another.
+// What is shown, against the truth `behindS` earlier.
+Shown fly(const Link& link, const Options& options, double behindS = 0) {
   const FlightPath path = flightPath();
   std::mt19937 random(2);
   std::uniform_real_distribution<> uniform(0, 1);
@@ -51,22 +60,32 @@ Shown fly(const Link& link, const Options& options) {
   size_t next = 0;
   SourceSample host;
   host.live = true;
+  host.carryOnNs = 200'000'000;
+  HostClock clock(3'600'000'000'000);
   std::vector<Vec3d> shown, truth;
   Shown result;
   for (int frame = 0; frame < 60 * path.durationS(); ++frame) {
     const double nowS = 0.007 + frame / 59.94;
+    host.heard.clear();
     for (; next < packets.size() && packets[next].first <= nowS; ++next) {
+      const auto& [arrivalS, trueS] = packets[next];
+      const int64_t arrivedNs = onClock(arrivalS);
+      const Moment moment = link.stamps ? clock.take(static_cast<int64_t>(trueS * 1e9), arrivedNs) : Moment{arrivedNs};
+      if (moment.overtaken) continue;
       host.valid = true;
-      host.pose = path.poseAt(packets[next].second);
-      host.arrivedNs = static_cast<int64_t>((1000 + packets[next].first) * 1e9);
+      host.pose = path.poseAt(trueS);
+      host.arrivedNs = arrivedNs;
+      host.atNs = moment.atNs;
+      host.stampedByHost = moment.byHost;
+      host.heard.push_back({host.pose, host.atNs, host.arrivedNs});
     }
     if (!host.valid) continue;
-    tracker.observe(host, host.pose, 1000 + nowS);
+    tracker.observe(host, host.pose, kEpochS + nowS);
     const DisplayedEye eye = tracker.eye();
     result.delayMs = eye.delayMs;
-    if (frame < 120) continue;
+    if (frame < 300) continue;  // what is learnt: velocity, clock
     shown.push_back(ecefFromGeodetic(eye.pose.position));
-    truth.push_back(ecefFromGeodetic(path.positionAt(nowS)));
+    truth.push_back(ecefFromGeodetic(path.positionAt(nowS - behindS)));
   }
   for (size_t i = 2; i < shown.size(); ++i) {
     const Vec3d off = shown[i] - truth[i];
@@ -90,12 +109,21 @@ struct Followed {
   const Options options = withDelay(HostDelayMode::automatic);
   ViewpointTracker tracker{options};
   SourceSample host;
-  Followed() { host.live = host.valid = true; }
+  Followed() {
+    host.live = host.valid = true;
+    host.carryOnNs = 200'000'000;
+  }
   void hear(const Pose& pose, double arrivedS) {
     host.pose = pose;
-    host.arrivedNs = static_cast<int64_t>(arrivedS * 1e9);
+    const auto arrivedNs = static_cast<int64_t>(arrivedS * 1e9);
+    if (arrivedNs == host.arrivedNs) return;
+    host.arrivedNs = host.atNs = arrivedNs;
+    host.heard.push_back({pose, arrivedNs, arrivedNs});
   }
-  void frame(double nowS) { tracker.observe(host, host.pose, nowS); }
+  void frame(double nowS) {
+    tracker.observe(host, host.pose, nowS);
+    host.heard.clear();
+  }
 };
 
 }  // namespace
@@ -114,12 +142,44 @@ TEST_CASE("a live host's aircraft is drawn where it is at the frame's time, with
   }
 }
 
+TEST_CASE(
+    "a host's time stamps show the aircraft where it is under jitter, loss and reordering; arrivals where it was") {
+  const Options automatic = withDelay(HostDelayMode::automatic);
+  const Shown byArrival = fly({0.03, 0.2, 0, false}, automatic), byHost = fly({0.03, 0.2, 0, true}, automatic);
+  WARN("jitter 30 ms, loss 0.2: by arrival " << byArrival.rmsM << " m off, stutter " << byArrival.stutterM
+                                             << " m; by the host's stamps " << byHost.rmsM << " m, " << byHost.stutterM
+                                             << " m");
+  CHECK(byHost.rmsM * 5 < byArrival.rmsM);
+  CHECK(byHost.rmsM < 0.3);
+  CHECK(byHost.stutterM < byArrival.stutterM);
+  Options none = automatic;
+  none.predictor = PredictorMode::none;  // is the pager's
+  CHECK(fly({0.03, 0.2, 0, true}, none).rmsM == byHost.rmsM);
+}
+
 TEST_CASE("the delay: as asked for, and by default what jitter goes beyond 50 ms") {
   Options fixed = withDelay(HostDelayMode::fixed);
   fixed.hostDelayMs = 40;
   const Shown asked = fly({0, 0}, fixed);
   CHECK(asked.delayMs == Approx(40));
   CHECK(asked.rmsM == Approx(0.04 * 157).epsilon(0.05));  // 150 to 170 m/s
+  // Between the host's poses, whatever the pager's predictor is.
+  for (const PredictorMode predictor : {PredictorMode::kalman, PredictorMode::none}) {
+    fixed.predictor = predictor;
+    const Shown between = fly({0, 0, 0, true}, fixed, 0.04);
+    CHECK(between.delayMs == 40);
+    CHECK(between.rmsM < 0.003);
+    CHECK(between.stutterM < 0.003);
+  }
+  // Late and lost packets: as much of them as the delay has room for, and the rest is carried on.
+  for (const bool stamps : {false, true}) {
+    fixed.hostDelayMs = 100;
+    const Shown bad = fly({0.03, 0.2, 0, stamps}, fixed, 0.1);
+    WARN("delay 100 ms, jitter 30 ms, loss 0.2, " << (stamps ? "host's stamps: " : "arrivals: ") << bad.rmsM
+                                                  << " m off, stutter " << bad.stutterM << " m");
+    CHECK(bad.rmsM < (stamps ? 0.05 : 3));
+    CHECK(bad.stutterM < (stamps ? 0.05 : 0.6));
+  }
   const double delayMs = fly({0, 0, 0.25}, withDelay(HostDelayMode::automatic)).delayMs;
   CHECK(delayMs > 5);
   CHECK(delayMs <= 100);
@@ -212,6 +272,37 @@ TEST_CASE("a host that falls silent: the eye goes on a fifth of a second, then w
       CHECK(look.at(5).ecefM == look.at(0).ecefM);
       CHECK(tracker.record(2).horizonS == 0);
     }
+  }
+}
+
+TEST_CASE("an aircraft that its host's rates carry on goes a fifth of a second without a message, and no farther") {
+  for (const HostDelayMode mode : {HostDelayMode::automatic, HostDelayMode::off, HostDelayMode::fixed}) {
+    Options options = withDelay(mode);
+    options.hostDelayMs = 30;
+    ViewpointTracker tracker(options);
+    SourceSample host;
+    host.live = host.valid = true;
+    host.carryOnNs = 200'000'000;
+    double newestS = 0, nowS = 0;
+    const auto northAt = [](double s) { return Pose{{47 + s * 1e-3, 8, 3000}, 0, 0, 0}; };  // 111 m/s
+    const auto frame = [&](double frameS) {
+      host.motion = [&](int64_t ns) { return northAt(static_cast<double>(ns) * 1e-9); };
+      host.pose = northAt(std::min(frameS, newestS + 0.2));
+      tracker.observe(host, host.pose, frameS);
+      host.heard.clear();
+    };
+    for (; nowS < 3; nowS += 1 / 60.0) {
+      newestS = nowS;
+      host.arrivedNs = host.atNs = static_cast<int64_t>(nowS * 1e9);
+      host.heard.push_back({northAt(nowS), host.atNs, host.arrivedNs});
+      frame(nowS + 0.004);
+    }
+    for (; nowS < 5; nowS += 1 / 60.0) frame(nowS);
+    const double goneS = (tracker.eye().pose.position.latDeg - 47) / 1e-3 - newestS;
+    CHECK(goneS == Approx(0.2).margin(0.003));
+    CHECK(tracker.eye().silent);
+    CHECK(glm::distance(tracker.lookAhead(makeView({}, symmetricFrustum(60, 800, 600, 1), 800, 600)).at(3).ecefM,
+                        ecefFromGeodetic(northAt(newestS + 0.2).position)) < 0.5);
   }
 }
 

@@ -1,5 +1,6 @@
+#include "feed_script.h"
 #include "fuzz_input.h"
-#include "link/cigi.h"
+#include "link/cigi_receiver.h"
 
 namespace {
 
@@ -21,12 +22,19 @@ void checkAgain(const cigi::Packet& packet, const cigi::Format& format) {
   EYE_CHECK(message && message->rejected == 0 && message->packets.back() == packet);
 }
 
-}  // namespace
-
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  const auto message = cigi::parse(fuzz::bytesOf(data, size));
-  if (!message) return 0;
+void checkAlone(std::span<const std::byte> datagram) {
+  const auto message = cigi::parse(datagram);
+  if (!message) return;
   EYE_CHECK((message->rejected == 0) == message->firstRejection.empty());
   for (const cigi::Packet& packet : message->packets) checkAgain(packet, message->format);
+}
+
+}  // namespace
+
+// One message, and the same bytes as a session of several.
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const auto input = fuzz::bytesOf(data, size);
+  checkAlone(input);
+  fuzz::feed<cigi::Receiver>(input, kHostSilenceNs, "fuzz", cigi::ReceiverOptions{}, OpenProbe{});
   return 0;
 }

@@ -8,6 +8,7 @@
 
 #include "base/byte_reader.h"
 #include "chunk_kinds.h"
+#include "feed_script.h"
 #include "link/cigi_random.h"
 #include "link/dis.h"
 #include "link/native_fdm.h"
@@ -61,10 +62,85 @@ std::vector<Bytes> payloadKinds(const fs::path& path) {
   return kinds;
 }
 
+// Messages of a session, one a frame.
+class CigiScript {
+ public:
+  explicit CigiScript(const cigi::Format& format) : format_(format) {}
+  void say(const std::vector<cigi::Packet>& packets, uint8_t wait = 16, uint8_t sender = 0) {
+    cigi::IgControl control;
+    control.mode = cigi::IgMode::operate;
+    control.smoothing = true;
+    control.hostFrame = frame_++;
+    control.ticks = control.hostFrame * 1600;
+    cigi::Builder builder(format_, control);
+    for (const cigi::Packet& packet : packets) builder.add(packet);
+    fuzz::addStep(input_, builder.take(), wait, sender);
+  }
+  void goBack(uint32_t frames) { frame_ -= frames; }
+  const Bytes& input() const { return input_; }
+
+ private:
+  cigi::Format format_;
+  uint32_t frame_ = 5;
+  Bytes input_;
+};
+
+cigi::Entity entityAt(uint16_t id, const cigi::Point& point, cigi::EntityState state = cigi::EntityState::active,
+                      uint16_t parentId = 0) {
+  cigi::EntityTraits traits;
+  traits.state = state;
+  traits.smoothing = true;
+  return {id, traits, cigi::EntityPlace{cigi::Clamp::none, parentId, 3, 2, 1, point}};
+}
+
+// What a session remembers: circles of attached entities and their end, views and their groups, motion, overtaken
+// messages, another host.
+void cigiSessionSeeds(Corpus& corpus, const cigi::Format& format) {
+  const Geodetic place{48.5, 16.5, 500};
+  const cigi::BodyOffset offset{10, 2, -1};
+  cigi::Velocity velocity;
+  velocity.xMS = 100, velocity.yawDegS = 3, velocity.inBodyFrame = true;
+  cigi::Acceleration acceleration;
+  acceleration.xMS2 = 5;
+  cigi::ViewControl eye;
+  eye.entityId = 2, eye.xM = 1.5, eye.yawDeg = 60;
+  cigi::ViewControl groupsEye = eye;
+  groupsEye.viewId = 9, groupsEye.groupId = 3, groupsEye.entityId = 1;
+  cigi::ViewDefinition lens;
+  lens.groupId = 3, lens.leftDegOrM = -30, lens.rightDegOrM = 20, lens.nearM = 0.5;
+  cigi::CelestialSphere sky;
+  sky.dateTime = cigi::DateTime{2024, 6, 21, 12, 30, 0}, sky.clockRuns = true;
+  cigi::Weather fog;
+  fog.enabled = true, fog.visibilityM = 200, fog.thicknessM = 900;
+  const cigi::HeightRequest height{7, cigi::HeightKind::both, 2, 2, offset};
+
+  CigiScript attached(format);
+  attached.say({entityAt(0, place), lens, sky, fog});
+  attached.say({entityAt(1, offset, cigi::EntityState::active, 0), entityAt(2, offset, cigi::EntityState::active, 1)});
+  attached.say({eye, velocity, acceleration, height});
+  attached.say({});
+  attached.say({groupsEye}, 201);
+  attached.say({entityAt(0, offset, cigi::EntityState::active, 2)});  // a circle
+  attached.say({entityAt(1, offset, cigi::EntityState::destroyed)});
+  attached.say({entityAt(0, place)});
+  corpus.add(attached.input());
+
+  CigiScript overtaken(format);
+  for (int i = 0; i < 4; ++i) overtaken.say({entityAt(0, place), velocity}, 10, i == 2 ? 0x80 : 0);
+  overtaken.goBack(3);
+  overtaken.say({lens, entityAt(0, Geodetic{-48, 179.9, 100}), height});
+  overtaken.goBack(2);
+  for (int i = 0; i < 12; ++i) overtaken.say({entityAt(0, place)});
+  overtaken.say({entityAt(0, place)}, 16, 1);
+  overtaken.say({entityAt(0, place)}, 203, 1);
+  corpus.add(overtaken.input());
+}
+
 void cigiSeeds(Corpus corpus, const fs::path& captures) {
   for (const char* name : {"cigi33_ccl_c1723.pcap", "cigi40_ccl_c1723.pcap"})
     for (const Bytes& payload : payloadKinds(captures / name)) corpus.add(payload);
   for (const cigi::Format& format : test::cigiFormats()) {
+    cigiSessionSeeds(corpus, format);
     test::RandomCigi random(1, format.version);
     for (size_t i = 0; i < std::variant_size_v<cigi::Packet>; ++i) {
       cigi::Builder builder = i < test::kStartOfFrameIndex ? cigi::Builder(format, random.igControl())
@@ -82,14 +158,34 @@ void fdmSeeds(Corpus corpus, const fs::path& captures) {
   newer[3] = std::byte{25};
   corpus.add(newer);
   for (const Bytes& payload : payloadKinds(captures / "jsbsim_c1723_takeoff.pcap")) corpus.add(payload);
+  // A flight long enough for its clock to be believed, of milliseconds, and a packet that was overtaken.
+  Bytes flight;
+  for (uint32_t i = 0; i < 60; ++i)
+    fuzz::addStep(flight,
+                  buildNativeFdm({{{48.5, 16.5 + i * 1e-3, 500}, 90, 2, -5}, 16000.0, 200 * (i == 55 ? 53 : i)}), 200,
+                  i % 8 == 7 ? 0x80 : 0);
+  corpus.add(flight);
 }
 
 void smallSeeds(const fs::path& out) {
   DisEntityState entity;
   entity.pose = {{48.5, 16.5, 500}, 90, 2, -5};
   entity.marking = "EYE 1";
-  Corpus(out / "dis").add(buildDisEntityState(entity));
-  Corpus(out / "rpos").add(buildRpos({.pose = entity.pose}));
+  Corpus dis(out / "dis"), rpos(out / "rpos");
+  dis.add(buildDisEntityState(entity));
+  rpos.add(buildRpos({.pose = entity.pose}));
+  // Of each way to move, over the hour, with another entity and another sender between.
+  Bytes exercise, flight;
+  entity.velocityMS = {100, 20, -3}, entity.accelerationMS2 = {1, 2, 3}, entity.turnRateBodyRadS = {0.1, 0.2, 0.3};
+  for (uint8_t i = 0; i < 30; ++i) {
+    entity.deadReckoning = static_cast<DeadReckoning>(i % 10);
+    entity.timestamp = disTimestamp(std::fmod(3598 + (i == 20 ? 18 : i) * 0.2, 3600), i > 25);
+    entity.entity = i % 5 == 4 ? 1 : 0;
+    fuzz::addStep(exercise, buildDisEntityState(entity), i == 28 ? 213 : 200, i > 22 ? 1 : 0);
+    fuzz::addStep(flight, buildRpos({.pose = entity.pose}), i == 15 ? 203 : 16, i > 12 ? 1 : 0);
+  }
+  dis.add(exercise);
+  rpos.add(flight);
 }
 
 void pcapSeeds(Corpus corpus, const fs::path& captures) {

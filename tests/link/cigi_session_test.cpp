@@ -238,25 +238,22 @@ TEST_CASE("session: the table is bounded, and what is beyond is counted") {
   CHECK(table.turnedAway() == 5000 - kMaxEntities);
 }
 
-TEST_CASE(
-    "session: a rate carries on what is not placed anew, level along the ground, for as long as the host speaks") {
+TEST_CASE("session: a rate carries on what is not placed anew, level along the ground") {
   const Pose start{{60, 10, 1000}, 90, 0, 0};
   Host host;
   Velocity velocity;
   velocity.yMS = 200, velocity.yawDegS = 3;
   host.says({entityAt(0, start), velocity});
   CHECK(host.pose(0.1) == start);  // told in this frame: shown as told
-  CHECK_FALSE(carriedTo(host.session.snapshot().eye, host.nowNs + kSecond));
+  CHECK_FALSE(isCarriedOn(host.session.snapshot().eye));
   for (int i = 0; i < 600; ++i) host.nowNs += kSecond / 60, host.says({});
   const auto after = host.pose();
   REQUIRE(after);
   CHECK(metresBetween(*after, start) == Approx(2000).margin(0.05));
   CHECK(after->position.altM == Approx(1000).margin(1e-6));
   CHECK(after->headingDeg == Approx(120).margin(1e-3));
-  // Silent: a few lost datagrams' worth, then it stands.
+  CHECK(isCarriedOn(host.session.snapshot().eye));
   CHECK(metresBetween(*host.pose(0.1), *after) == Approx(20).margin(0.1));
-  CHECK(host.pose(5) == host.pose(0.2));
-  CHECK(carriedTo(host.session.snapshot().eye, host.nowNs + 5 * kSecond) == host.nowNs + kSecond / 5);
   // In the body's axes, with an acceleration, and smoothing by the host's leave.
   Host smooth;
   smooth.smoothing = true;

@@ -147,5 +147,33 @@ TEST_CASE("X-Plane over UDP: it is asked, asked again while silent, and told whe
   CHECK(Bytes(request->begin(), request->end()) == buildRposRequest(0));
 }
 
+TEST_CASE("X-Plane over UDP: the last request is that there be no more") {
+  const auto xplane = UdpSocket::listenOn({kLoopbackAddress, 0});
+  for (const int waitMs : {970, 985, 995}) {  // about when it would be asked again
+    auto source = openStateSource(fmt::format("xplane://:{}?rate=30", xplane->port()));
+    REQUIRE(source);
+    REQUIRE(xplane->wait(3000));
+    std::this_thread::sleep_for(std::chrono::milliseconds(waitMs));
+    source->reset();
+    Bytes buffer(kMaxDatagramBytes), last;
+    Peer asker;
+    while (xplane->wait(100)) {
+      const auto request = xplane->receiveFrom(buffer, asker);
+      last.assign(request->begin(), request->end());
+    }
+    CHECK(last == buildRposRequest(0));
+  }
+}
+
+TEST_CASE("CIGI over UDP: replies go to a broadcast address too") {
+  const auto everybody = UdpSocket::listenOn({"127.255.255.255", freePort()});
+  REQUIRE(everybody);
+  const auto source =
+      openStateSource(fmt::format("cigi://:{}?reply=127.255.255.255:{}", freePort(), everybody->port()));
+  REQUIRE(source);
+  (*source)->frameDone({});
+  CHECK(everybody->wait(2000));
+}
+
 }  // namespace
 }  // namespace eye
