@@ -7,8 +7,6 @@
 namespace eye {
 namespace {
 
-constexpr size_t kFolds = 7;
-
 struct Line {
   double slope = 1, offsetM = 0;
 };
@@ -50,9 +48,9 @@ DistanceFigures distanceFigures(std::span<const DistancePair> pairs) {
   return figures;
 }
 
-std::vector<DistancePair> withRegression(std::span<const DistancePair> pairs) {
+std::optional<std::vector<DistancePair>> withRegression(std::span<const DistancePair> pairs) {
+  if (pairs.size() < kLeastForRegression) return std::nullopt;
   std::vector<DistancePair> corrected(pairs.begin(), pairs.end());
-  if (pairs.size() < 2 * kFolds) return corrected;
   for (size_t fold = 0; fold < kFolds; ++fold) {
     const Line line = fit(pairs, [&](size_t i) { return i % kFolds != fold; });
     for (size_t i = fold; i < pairs.size(); i += kFolds)

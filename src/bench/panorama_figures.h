@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "bench/panorama_published.h"
 
@@ -21,8 +23,9 @@ struct DistanceFigures {
 DistanceFigures distanceFigures(std::span<const DistancePair> pairs);
 
 // Distances corrected by true = b told + c, least squares. Each seventh of the pairs is corrected by what the other six
-// give, so that none is judged by a line that it had a part in. (The paper takes the best of the seven lines.) Fewer
-// than 14 pairs come back as they are.
-std::vector<DistancePair> withRegression(std::span<const DistancePair> pairs);
+// give, so that none is judged by a line that it had a part in. (The paper takes the best of the seven lines.) Nothing
+// where there are fewer than two pairs a seventh.
+inline constexpr size_t kFolds = 7, kLeastForRegression = 2 * kFolds;
+std::optional<std::vector<DistancePair>> withRegression(std::span<const DistancePair> pairs);
 
 }  // namespace eye

@@ -23,7 +23,8 @@ enum PanoramaMethod : size_t {
 struct MeasuredPeak {
   std::string name, viewpoint;
   bool isAboveEye = false;
-  double trueM = 0;
+  double trueM = 0;    // to the gazetteer's place and height
+  double groundM = 0;  // to the terrain's own summit
   std::array<double, methodCount> toldM{};
 };
 

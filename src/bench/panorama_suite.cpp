@@ -1,5 +1,5 @@
-// Suite `panorama`: paper 002's Tables 1 to 3. Panoramas from summits and from half way up, and how far the peaks in
-// them are said to be.
+// Suite `panorama`: paper 002's Tables 1 to 3. Panoramas from summits, from half way up and from valleys, and how far
+// the peaks in them are said to be.
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +10,7 @@
 #include "bench/panorama_report.h"
 #include "bench/suites.h"
 #include "bench/summit_places.h"
+#include "pano/line_of_sight.h"
 #include "pano/peaks.h"
 #include "pano/planar_depth.h"
 #include "pano/views.h"
@@ -17,10 +18,10 @@
 namespace eye {
 namespace {
 
-constexpr size_t kPairs = 3, kQuickPairs = 1;
+constexpr ViewpointWish kViewpoints{.mountains = 3, .valleys = 2}, kQuickViewpoints{.mountains = 1, .valleys = 1};
 constexpr int kWidthPx = 8192, kQuickWidthPx = 2048;
 constexpr double kVerticalFovDeg = 60;
-// A summit that shows by less is not in sight: the measured pixel lies so far under it, see measuredM.
+// A summit that shows by less is not in sight: a pixel's centre may lie above it, or the next one's at its foot.
 constexpr double kUnderPx = 1.5;
 constexpr double kNearestM = 3000, kFarthestM = 150000;
 // Of a viewpoint's peaks so many are tried, spread over all distances.
@@ -50,13 +51,13 @@ double throughBufferM(const PaperBuffer& buffer, double depthM) {
 }
 
 struct Target {
-  Geodetic top;
+  Geodetic listed, top;  // the gazetteer's, and the ground's
   std::string name;
-  double trueM = 0;
+  double trueM = 0, groundM = 0;
 };
 
 // Peaks in sight, without a look at any picture.
-Result<std::vector<Target>> targetsOf(const Geodetic& eye, const std::vector<Summit>& summits, double refraction,
+Result<std::vector<Target>> targetsOf(const Geodetic& eye, const std::vector<Summit>& summits, const SceneBend& bend,
                                       double underRad, size_t most, GroundQuery& ground) {
   std::vector<Target> near;
   for (const Summit& summit : summits) {
@@ -65,41 +66,46 @@ Result<std::vector<Target>> targetsOf(const Geodetic& eye, const std::vector<Sum
     if (!summit.heightM || awayM < kNearestM || awayM > kFarthestM) continue;
     const Result<GroundHit> under = ground.under(place.latDeg, place.lonDeg);
     if (!under) return tl::unexpected(under.error());
-    if (std::abs(under->position.altM - place.altM) < 2 * kSameSummitM) near.push_back({place, summit.name, awayM});
+    if (std::abs(under->position.altM - place.altM) < 2 * kSameSummitM) near.push_back({place, {}, summit.name, awayM});
   }
   std::ranges::stable_sort(near, {}, &Target::trueM);
   std::vector<Target> targets;
   for (size_t i = 0; i < std::min(most, near.size()); ++i) {
     Target target = near[i * near.size() / std::min(most, near.size())];
-    const Result<Geodetic> top = climb(ground, target.top, kSummitReachM);
+    const Result<Geodetic> top = climb(ground, target.listed, kSummitReachM);
     if (!top) return tl::unexpected(top.error());
-    if (std::abs(top->altM - target.top.altM) > kSameSummitM) continue;
-    const Result<bool> inSight = isInSight(ground, eye, *top, refraction, underRad);
+    if (std::abs(top->altM - target.listed.altM) > kSameSummitM) continue;
+    const Result<bool> inSight = isInSight(ground, eye, *top, bend, underRad);
     if (!inSight) return tl::unexpected(inSight.error());
     if (!*inSight) continue;
     target.top = *top;
-    target.trueM = straightM(eye, *top);
+    target.groundM = straightM(eye, *top);
     targets.push_back(std::move(target));
   }
   return targets;
 }
 
-MeasuredPeak measured(const Target& target, const Viewpoint& viewpoint, const Panorama& range, const Panorama& paper,
+MeasuredPeak measured(const Target& target, const Viewpoint& viewpoint, const Panorama& panorama,
                       const SceneBend& bend) {
   const Sighting seen = sightingOf(viewpoint.eye, target.top, bend, EarthShape::ellipsoid);
-  const double x = range.frame.xOf(seen.azimuthDeg), y = range.frame.yOf(seen.elevationDeg);
+  const PanoramaFrame& frame = panorama.frame;
+  const auto pixel = summitPixel(panorama, frame.xOf(seen.azimuthDeg), frame.yOf(seen.elevationDeg), seen.distanceM);
   const Vec3d offset = offsetEnu(viewpoint.eye, target.top, EarthShape::ellipsoid);
   const double perSquare = 1 / std::cos(radFromDeg(viewpoint.eye.latDeg));
   constexpr PaperBuffer kPaper;
   constexpr PaperBuffer kNearPlane{.nearM = 0.1};
-  MeasuredPeak peak{target.name, viewpoint.name, target.top.altM > viewpoint.eye.altM, target.trueM, {}};
-  peak.toldM[methodRange] = measuredM(range, x, y);
-  peak.toldM[methodPaper] = measuredM(paper, x, y);
+  MeasuredPeak peak{.name = target.name,
+                    .viewpoint = viewpoint.name,
+                    .isAboveEye = target.listed.altM > viewpoint.eye.altM,
+                    .trueM = target.trueM,
+                    .groundM = target.groundM};
+  if (pixel) {
+    peak.toldM[methodRange] = panorama.distanceM[*pixel];
+    peak.toldM[methodPaper] = panorama.planarM[*pixel];
+  }
   peak.toldM[methodPlanar] = planarDepthM(offset);
   peak.toldM[methodNearPlane] = throughBufferM(kNearPlane, planarDepthM(offset));
   peak.toldM[methodSquareDegrees] = throughBufferM(kPaper, planarDepthM({offset.x * perSquare, offset.y, offset.z}));
-  for (double& told : peak.toldM)
-    if (std::isnan(told)) told = 0;
   return peak;
 }
 
@@ -120,12 +126,13 @@ Result<SuiteReport> runPanoramaSuite(const SuiteOptions& options) {
   if (!ground) return tl::unexpected(ground.error());
   const Result<std::vector<Summit>> summits = summitsFor(options, terrain);
   if (!summits) return tl::unexpected(summits.error());
-  const auto viewpoints = summitViewpoints(*summits, options.quick ? kQuickPairs : kPairs, *ground);
+  const auto viewpoints = summitViewpoints(*summits, options.quick ? kQuickViewpoints : kViewpoints, *ground);
   if (!viewpoints) return tl::unexpected(viewpoints.error());
 
   PanoramaOptions pano;
   pano.terrain = terrain;
   pano.device = options.device;
+  pano.depth = DepthKind::paper;  // beside the range
   pano.frame = panoramaFrame(options.quick ? kQuickWidthPx : kWidthPx, kVerticalFovDeg);
   std::vector<MeasuredPeak> peaks;
   std::string device, places;
@@ -133,21 +140,15 @@ Result<SuiteReport> runPanoramaSuite(const SuiteOptions& options) {
     const Viewpoint& viewpoint = (*viewpoints)[i];
     const double share = static_cast<double>(i) / static_cast<double>(viewpoints->size());
     if (options.progress) options.progress(viewpoint.name, share);
-    const auto targets =
-        targetsOf(viewpoint.eye, *summits, pano.refraction, kUnderPx * radFromDeg(pano.frame.degPerPx()),
-                  options.quick ? kQuickTried : kMostTried, *ground);
-    if (!targets) return tl::unexpected(targets.error());
     pano.eye = viewpoint.eye;
     const SceneBend bend = sceneBend(pano.eye.latDeg, pano.refraction, pano.earth);
-    pano.depth = DepthKind::range;
-    const Result<RenderedPanorama> range = renderPanorama(pano);
-    if (!range) return tl::unexpected(range.error());
-    pano.depth = DepthKind::paper;
-    const Result<RenderedPanorama> paper = renderPanorama(pano);
-    if (!paper) return tl::unexpected(paper.error());
-    device = range->device;
-    for (const Target& target : *targets)
-      peaks.push_back(measured(target, viewpoint, range->panorama, paper->panorama, bend));
+    const auto targets = targetsOf(viewpoint.eye, *summits, bend, kUnderPx * radFromDeg(pano.frame.degPerPx()),
+                                   options.quick ? kQuickTried : kMostTried, *ground);
+    if (!targets) return tl::unexpected(targets.error());
+    const Result<RenderedPanorama> rendered = renderPanorama(pano);
+    if (!rendered) return tl::unexpected(rendered.error());
+    device = rendered->device;
+    for (const Target& target : *targets) peaks.push_back(measured(target, viewpoint, rendered->panorama, bend));
     places += fmt::format("{}{} ({:.4f} N {:.4f} E, {:.0f} m, {} peaks)", i == 0 ? "" : ", ", viewpoint.name,
                           viewpoint.eye.latDeg, viewpoint.eye.lonDeg, viewpoint.eye.altM, targets->size());
   }

@@ -1,5 +1,5 @@
 // Where the panorama suite stands and what it looks at: summits of a gazetteer or of the terrain itself, and viewpoints
-// on some of them and half way up.
+// on some of them, half way up and in the valleys.
 #pragma once
 
 #include <string>
@@ -18,14 +18,14 @@ struct Viewpoint {
   Geodetic eye;
 };
 
-// On the highest summits that the terrain has, 40 km apart and more, and half way up beside each: two of `pairs`
-// viewpoints each. Fewer where there are not so many.
-Result<std::vector<Viewpoint>> summitViewpoints(std::vector<Summit> summits, size_t pairs, GroundQuery& ground);
+struct ViewpointWish {
+  size_t mountains = 3;
+  size_t valleys = 2;  // a mountain
+};
 
-// Whether the top shows by more than `underRad` of angle, in double precision on the finest meshes, along the bent ray
-// so far under it: a parabola in steps of 5 km, of which each is straight. It must meet the top's own slope, within a
-// kilometre, and nothing before. `refraction`: k.
-Result<bool> isInSight(GroundQuery& ground, const Geodetic& eye, const Geodetic& top, double refraction,
-                       double underRad);
+// On the highest summits that the terrain has, 40 km apart and more; half way up beside each; and in valleys or the
+// foreland, 6 to 25 km away, from where most of the summits over them show. Fewer where there are not so many.
+Result<std::vector<Viewpoint>> summitViewpoints(std::vector<Summit> summits, const ViewpointWish& wish,
+                                                GroundQuery& ground);
 
 }  // namespace eye

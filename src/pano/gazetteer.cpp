@@ -1,13 +1,16 @@
 #include "pano/gazetteer.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
+#include "link/pose_limits.h"
 #include "link/text_lines.h"
 #include "pano/summit_fields.h"
 
@@ -68,22 +71,37 @@ bool looksLikeAlpano(std::string_view line) {
   return sexagesimalDeg(takeWord(line)) && sexagesimalDeg(takeWord(line));
 }
 
-// A number, or a text that is one; nothing where there is neither.
-std::optional<double> numberIn(const nlohmann::json& properties, std::initializer_list<const char*> keys) {
-  for (const char* key : keys) {
-    const auto found = properties.find(key);
-    if (found == properties.end()) continue;
-    if (found->is_number()) return found->get<double>();
-    if (!found->is_string()) continue;
-    const std::string& text = found->get_ref<const std::string&>();
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (end != text.c_str() && std::isfinite(value)) return value;  // "1054 m" too
-  }
-  return std::nullopt;
+// Of GeoNames' class T, which has valleys, passes and plains too. Of groups of mountains the place is the middle, which
+// is no summit but where they are given a height.
+constexpr std::array<std::string_view, 8> kSummitCodes{"PK", "MT", "HLL", "VLC", "CONE", "BUTE", "NTK", "MND"};
+constexpr std::array<std::string_view, 4> kGroupCodes{"PKS", "MTS", "HLLS", "NTKS"};
+
+bool isSummit(std::string_view code, bool hasHeight) {
+  return std::ranges::count(kSummitCodes, code) > 0 || (hasHeight && std::ranges::count(kGroupCodes, code) > 0);
 }
 
-std::optional<Summit> summitOf(const nlohmann::json& feature) {
+// Metres; nothing where a feature tells none. What it tells and cannot be read is noted.
+std::optional<double> heightOf(const nlohmann::json& properties, const nlohmann::json& coordinates,
+                               GazetteerDoubts& doubts) {
+  const auto believed = [&](std::optional<double> heightM, const std::string& text) {
+    if (heightM && *heightM <= kHighestSummitM && *heightM >= kMinAltitudeM) return heightM;
+    if (doubts.heights++ == 0) doubts.firstHeight = cleanName(text);
+    return std::optional<double>{};
+  };
+  for (const char* key : {"ele", "height", "elevation"}) {
+    const auto found = properties.find(key);
+    if (found == properties.end() || !(found->is_number() || found->is_string())) continue;
+    const std::string text = found->is_string() ? found->get<std::string>() : found->dump();
+    if (text.find_first_not_of(' ') == std::string::npos) continue;
+    const std::optional<double> heightM = believed(heightFrom(text), text);
+    if (heightM == 0.0) continue;  // what importers write who know none
+    return heightM;
+  }
+  if (coordinates.size() < 3 || !coordinates[2].is_number() || coordinates[2] == 0.0) return std::nullopt;
+  return believed(coordinates[2].get<double>(), coordinates[2].dump());
+}
+
+std::optional<Summit> summitOf(const nlohmann::json& feature, GazetteerDoubts& doubts) {
   const auto geometry = feature.find("geometry"), properties = feature.find("properties");
   if (geometry == feature.end() || properties == feature.end() || !geometry->is_object() || !properties->is_object())
     return std::nullopt;
@@ -92,19 +110,15 @@ std::optional<Summit> summitOf(const nlohmann::json& feature) {
       !(*coordinates)[0].is_number() || !(*coordinates)[1].is_number() || name == properties->end() ||
       !name->is_string())
     return std::nullopt;
-  Summit summit{cleanName(name->get<std::string>()), (*coordinates)[1], (*coordinates)[0],
-                numberIn(*properties, {"ele", "height", "elevation"})};
-  const bool hasHeight = coordinates->size() > 2 && (*coordinates)[2].is_number();
-  if (!summit.heightM && hasHeight) summit.heightM = (*coordinates)[2].get<double>();
-  if (summit.heightM == 0.0) summit.heightM.reset();  // what importers write who know none
-  const Result<Summit> checked = checkedSummit(std::move(summit));
+  const Result<Summit> checked = checkedSummit({cleanName(name->get<std::string>()), (*coordinates)[1],
+                                                (*coordinates)[0], heightOf(*properties, *coordinates, doubts)});
   if (!checked || checked->name.empty()) return std::nullopt;
   return *checked;
 }
 
 }  // namespace
 
-Result<std::vector<Summit>> parseGeoJsonGazetteer(std::string_view text) {
+Result<std::vector<Summit>> parseGeoJsonGazetteer(std::string_view text, GazetteerDoubts& doubts) {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object())
     return fail(ErrorKind::badData, "it begins like GeoJSON and is not valid JSON; export it again");
@@ -114,7 +128,7 @@ Result<std::vector<Summit>> parseGeoJsonGazetteer(std::string_view text) {
   std::vector<Summit> summits;
   for (const nlohmann::json& feature : *features) {
     if (!feature.is_object()) continue;
-    if (auto summit = summitOf(feature)) summits.push_back(std::move(*summit));
+    if (auto summit = summitOf(feature, doubts)) summits.push_back(std::move(*summit));
   }
   return summits;
 }
@@ -128,7 +142,7 @@ Result<std::vector<Summit>> parseGeoNamesGazetteer(std::string_view text) {
     if (cells.size() != kGeoNamesColumns)
       return failAtLine(lines.number(),
                         fmt::format("{} columns between tabs; GeoNames' table has {}", cells.size(), kGeoNamesColumns));
-    if (cells[6] != "T") continue;
+    if (cells[6] != "T" || !isSummit(cells[7], !cells[15].empty())) continue;
     Result<Summit> summit = summitFrom(cells[1], cells[4], cells[5], cells[15]);
     if (!summit) return failAtLine(lines.number(), summit.error().message);
     summits.push_back(std::move(*summit));
@@ -143,7 +157,8 @@ Result<std::vector<Summit>> parseAlpanoGazetteer(std::string_view text) {
     if (line->find_first_not_of(' ') == std::string_view::npos) continue;
     const std::string name = cleanName(line->substr(std::min(line->size(), kNameColumn)));
     const std::string_view lon = takeWord(*line), lat = takeWord(*line), height = takeWord(*line);
-    const auto lonDeg = sexagesimalDeg(lon), latDeg = sexagesimalDeg(lat), heightM = wholeNumber(height, 9000);
+    const auto lonDeg = sexagesimalDeg(lon), latDeg = sexagesimalDeg(lat),
+               heightM = wholeNumber(height, static_cast<int>(kHighestSummitM));
     if (!lonDeg || !latDeg || !heightM)
       return failAtLine(lines.number(),
                         fmt::format("'{} {} {}' is no longitude and latitude as degrees:minutes:seconds "
@@ -156,10 +171,10 @@ Result<std::vector<Summit>> parseAlpanoGazetteer(std::string_view text) {
   return summits;
 }
 
-Result<std::vector<Summit>> parseGazetteer(std::string_view text) {
+Result<std::vector<Summit>> parseGazetteer(std::string_view text, GazetteerDoubts& doubts) {
   const std::string_view line = firstLine(text);
   const std::string_view begin = line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
-  Result<std::vector<Summit>> summits = begin.starts_with('{') ? parseGeoJsonGazetteer(text)
+  Result<std::vector<Summit>> summits = begin.starts_with('{') ? parseGeoJsonGazetteer(text, doubts)
                                         : splitAt(line, '\t', kGeoNamesColumns + 1).size() == kGeoNamesColumns
                                             ? parseGeoNamesGazetteer(text)
                                         : looksLikeAlpano(line) ? parseAlpanoGazetteer(text)
@@ -178,8 +193,12 @@ Result<std::vector<Summit>> loadGazetteer(const std::string& path) {
     return fail(ErrorKind::badData,
                 fmt::format("peaks '{}': more than {} MiB; cut out the region", path, kMaxGazetteerBytes >> 20));
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  Result<std::vector<Summit>> summits = parseGazetteer(text);
+  GazetteerDoubts doubts;
+  Result<std::vector<Summit>> summits = parseGazetteer(text, doubts);
   if (!summits) return fail(summits.error().kind, fmt::format("peaks '{}': {}", path, summits.error().message));
+  if (doubts.heights > 0)
+    spdlog::warn("peaks '{}': {} heights are none in metres or feet, such as '{}'; the terrain's are taken", path,
+                 doubts.heights, doubts.firstHeight);
   return summits;
 }
 

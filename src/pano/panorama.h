@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geo/frames.h"
@@ -38,7 +39,11 @@ struct Panorama {
   PanoramaFrame frame;
   Geodetic eye;
   std::vector<uint8_t> rgba;
-  std::vector<float> distanceM;  // NaN: sky
+  std::vector<float> distanceM;  // range along the ray; NaN: sky
+  std::vector<float> planarM{};  // as paper 002 tells it (see planar_depth.h), beside the range; empty unless asked for
+
+  // What is written and named: the paper's distances where they were asked for.
+  std::span<const float> told() const { return planarM.empty() ? distanceM : planarM; }
 };
 
 // The highest row with terrain in every column, heightPx where there is none.

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <future>
+#include <thread>
 
 #include <fmt/format.h>
 
 #include "paging/region.h"
+#include "pano/line_of_sight.h"
 #include "raster/gdal.h"
 
 namespace eye {
@@ -16,37 +18,101 @@ constexpr double kMetresPerDeg = 111200;
 // Where ground and gazetteer differ by more, the terrain does not have this summit: outside of its data, say.
 // Of a low hill less: it is not the plain beyond the data.
 constexpr double kSameSummitM = 300, kSameSummitShare = 0.25, kSameHillM = 50;
-// Something nearer by more than this hides a summit: the share covers the hillside under a flat top, the metres an eye
-// that stands on the mountain's own shoulder.
-constexpr double kHiddenShare = 0.05, kHiddenM = 150;
+// A summit that shows by less than this is lost between two pixels of the map.
+constexpr double kLeastShownPx = 0.5;
+constexpr double kHighestM = 8850;
+constexpr double kReachMargin = 1.1;  // refraction along the way to the horizon is not the same everywhere
 
-double distanceAt(const Panorama& panorama, double x, double y) {
+// What all summits are looked for in. Read by several threads.
+struct Scene {
+  const Panorama& panorama;
+  const PanoramaOptions& options;
+  SceneBend bend;
+  std::vector<float> farthestM;  // ground, by column; 0: none
+};
+
+std::vector<float> farthestByColumn(const Panorama& panorama) {
   const PanoramaFrame& frame = panorama.frame;
-  const int column = std::clamp(static_cast<int>(x), 0, frame.widthPx - 1), row = static_cast<int>(std::floor(y));
-  return row < 0 || row >= frame.heightPx ? std::numeric_limits<double>::quiet_NaN()
-                                          : panorama.distanceM[frame.at(column, row)];
+  std::vector<float> farthestM(static_cast<size_t>(frame.widthPx), 0);
+  for (int row = 0; row < frame.heightPx; ++row) {
+    const float* const distanceM = &panorama.distanceM[frame.at(0, row)];
+    // NaN is not greater than anything.
+    for (size_t column = 0; column < farthestM.size(); ++column)
+      if (distanceM[column] > farthestM[column]) farthestM[column] = distanceM[column];
+  }
+  return farthestM;
 }
 
-bool isHidden(double measuredM, double trueM) {
-  return measuredM < trueM - std::max(kHiddenM, kHiddenShare * trueM);
+// How far a summit can be at most: farthestGroundM is for the usual refraction, and goes with the root of the radius
+// that the Earth seems to have.
+double farthestSummitM(const PanoramaOptions& options, double summitM) {
+  constexpr double kUsualRefraction = 0.13;
+  const double flatter = std::sqrt((1 - kUsualRefraction) / (1 - options.refraction));
+  return kReachMargin * flatter * farthestGroundM(options.eye.altM, summitM);
 }
 
-// Whether some pixel around the place has nothing in front of it: else the summit needs no closer look.
-bool mayBeSeen(const Panorama& panorama, const Sighting& seen) {
-  const PanoramaFrame& frame = panorama.frame;
-  const double aroundRad = (kSummitReachM + kSameSummitM) / std::max(seen.distanceM, 1.0);
+// Whether some pixel around the gazetteer's place is as far as a summit there would be: else it needs no closer look.
+bool mayBeSeen(const Scene& scene, const Sighting& seen) {
+  const PanoramaFrame& frame = scene.panorama.frame;
+  const double aroundM = kSummitReachM + kSameSummitM;
+  const double reachPx =
+      std::min(degFromRad(aroundM / std::max(seen.distanceM, 1.0)) / frame.degPerPx() + 3, frame.widthPx / 4.0);
+  const double slackM = aroundM + ownSlopeM(seen.distanceM);
   const double x = frame.xOf(seen.azimuthDeg), y = frame.yOf(seen.elevationDeg);
-  const double reachPx = std::min(degFromRad(aroundRad) / frame.degPerPx() + 2, frame.widthPx / 4.0);
-  const int row = static_cast<int>(std::clamp(y + reachPx, 0.0, frame.heightPx - 1.0));
   const int highest = static_cast<int>(std::clamp(y - reachPx, 0.0, frame.heightPx - 1.0));
-  for (double across = -reachPx; across <= reachPx; across += 1) {
-    const double wrapped = std::fmod(x + across + frame.widthPx, frame.widthPx);
-    for (int r = highest; r <= row; ++r) {
-      const double d = distanceAt(panorama, wrapped, r);
-      if (!std::isnan(d) && !isHidden(d, seen.distanceM - 2 * kSummitReachM)) return true;
-    }
+  const int lowest = static_cast<int>(std::clamp(y + reachPx, 0.0, frame.heightPx - 1.0));
+  for (int across = -static_cast<int>(reachPx); across <= reachPx; ++across) {
+    const int column = (static_cast<int>(x) + across + frame.widthPx) % frame.widthPx;
+    if (scene.farthestM[static_cast<size_t>(column)] < seen.distanceM - slackM) continue;
+    for (int row = highest; row <= lowest; ++row)
+      if (std::abs(scene.panorama.distanceM[frame.at(column, row)] - seen.distanceM) <= slackM) return true;
   }
   return false;
+}
+
+// Nothing where the summit is out of reach; its height the terrain's where the gazetteer has none.
+Result<std::optional<PanoramaPeak>> withinReach(const Scene& scene, const Summit& summit, GroundQuery& ground) {
+  PanoramaPeak peak{.name = summit.name, .summit = {summit.latDeg, summit.lonDeg, summit.heightM.value_or(0)}};
+  const PanoramaOptions& options = scene.options;
+  Sighting seen = sightingOf(options.eye, peak.summit, scene.bend, options.earth);
+  const double mostM = farthestSummitM(options, summit.heightM.value_or(kHighestM));
+  if (seen.distanceM > mostM || seen.distanceM < 1) return std::optional<PanoramaPeak>{};
+  if (!summit.heightM) {
+    const Result<GroundHit> under = ground.under(summit.latDeg, summit.lonDeg);
+    if (!under) return tl::unexpected(under.error());
+    peak.summit.altM = under->position.altM;
+    seen = sightingOf(options.eye, peak.summit, scene.bend, options.earth);
+  }
+  peak.azimuthDeg = seen.azimuthDeg, peak.elevationDeg = seen.elevationDeg, peak.trueM = seen.distanceM;
+  return std::optional(std::move(peak));
+}
+
+// The ground's summit, whether it is in sight, and what the map has of it.
+Result<void> look(const Scene& scene, GroundQuery& ground, PanoramaPeak& peak) {
+  const PanoramaOptions& options = scene.options;
+  const PanoramaFrame& frame = scene.panorama.frame;
+  if (!mayBeSeen(scene, {peak.azimuthDeg, peak.elevationDeg, peak.trueM})) return {};
+  const Result<Geodetic> top = climb(ground, peak.summit, kSummitReachM);
+  if (!top) return tl::unexpected(top.error());
+  peak.ground = *top;
+  const double sameM = std::min(kSameSummitM, kSameHillM + kSameSummitShare * std::abs(peak.summit.altM));
+  if (std::abs(peak.ground.altM - peak.summit.altM) >= sameM) return {};
+  const Sighting drawn = sightingOf(options.eye, peak.ground, scene.bend, options.earth);
+  peak.x = frame.xOf(drawn.azimuthDeg), peak.y = frame.yOf(drawn.elevationDeg), peak.groundM = drawn.distanceM;
+  const std::optional<size_t> pixel = summitPixel(scene.panorama, peak.x, peak.y, peak.groundM);
+  if (!pixel) return {};
+  const Result<bool> inSight =
+      isInSight(ground, options.eye, peak.ground, scene.bend, kLeastShownPx * radFromDeg(frame.degPerPx()));
+  if (!inSight) return tl::unexpected(inSight.error());
+  peak.visible = *inSight;
+  peak.measuredM = static_cast<double>(scene.panorama.told()[*pixel]);
+  return {};
+}
+
+// Of a summit about the eye, radians; good enough to put summits in order.
+double roughAzimuth(const Geodetic& eye, const Summit& summit) {
+  const double east = std::remainder(summit.lonDeg - eye.lonDeg, 360.0) * std::cos(radFromDeg(eye.latDeg));
+  return std::atan2(east, summit.latDeg - eye.latDeg);
 }
 
 std::string quoted(const std::string& name) {
@@ -57,9 +123,14 @@ std::string quoted(const std::string& name) {
 
 }  // namespace
 
-double measuredM(const Panorama& panorama, double x, double y) {
-  const double at = distanceAt(panorama, x, y + 1);
-  return std::isnan(at) ? distanceAt(panorama, x, y + 2) : at;
+std::optional<size_t> summitPixel(const Panorama& panorama, double x, double y, double summitM) {
+  constexpr int kRowsUnder = 2;
+  const PanoramaFrame& frame = panorama.frame;
+  const int column = std::clamp(static_cast<int>(x), 0, frame.widthPx - 1), first = static_cast<int>(std::floor(y));
+  for (int row = std::max(first, 0); row <= std::min(first + kRowsUnder, frame.heightPx - 1); ++row)
+    if (std::abs(panorama.distanceM[frame.at(column, row)] - summitM) <= ownSlopeM(summitM))
+      return frame.at(column, row);
+  return std::nullopt;
 }
 
 Sighting sightingOf(const Geodetic& eye, const Geodetic& point, const SceneBend& bend, EarthShape earth) {
@@ -94,38 +165,41 @@ Result<Geodetic> climb(GroundQuery& ground, const Geodetic& from, double reachM)
 }
 
 Result<std::vector<PanoramaPeak>> findPeaks(const Panorama& panorama, const PanoramaOptions& options,
-                                            std::span<const Summit> summits, GroundQuery& ground) {
-  const PanoramaFrame& frame = panorama.frame;
-  const SceneBend bend = sceneBend(options.eye.latDeg, options.refraction, options.earth);
-  std::vector<PanoramaPeak> peaks;
-  for (const Summit& summit : summits) {
-    constexpr double kHighestM = 8850;
-    PanoramaPeak peak{.name = summit.name, .summit = {summit.latDeg, summit.lonDeg, summit.heightM.value_or(0)}};
-    // Twice: what refraction brings up beside the usual.
-    const double mostM = 1.2 * farthestGroundM(options.eye.altM, summit.heightM.value_or(kHighestM));
-    Sighting seen = sightingOf(options.eye, peak.summit, bend, options.earth);
-    if (seen.distanceM > mostM || seen.distanceM < 1) continue;
-    if (!summit.heightM) {
-      const Result<GroundHit> under = ground.under(summit.latDeg, summit.lonDeg);
-      if (!under) return tl::unexpected(under.error());
-      peak.summit.altM = under->position.altM;
-      seen = sightingOf(options.eye, peak.summit, bend, options.earth);
+                                            std::span<const Summit> summits) {
+  const Scene scene{panorama, options, sceneBend(options.eye.latDeg, options.refraction, options.earth),
+                    farthestByColumn(panorama)};
+  // Each worker has a stretch of the horizon: what it looks at lies in a few chunks, which it keeps decoded.
+  std::vector<const Summit*> round;
+  for (const Summit& summit : summits) round.push_back(&summit);
+  std::ranges::stable_sort(round, {}, [&](const Summit* s) { return roughAzimuth(options.eye, *s); });
+
+  using Found = Result<std::vector<PanoramaPeak>>;
+  const auto findIn = [&](std::span<const Summit* const> part) -> Found {
+    Result<GroundQuery> ground = GroundQuery::open(options.terrain);
+    if (!ground) return tl::unexpected(ground.error());
+    std::vector<PanoramaPeak> peaks;
+    for (const Summit* summit : part) {
+      auto peak = withinReach(scene, *summit, *ground);
+      if (!peak) return tl::unexpected(peak.error());
+      if (!*peak) continue;
+      if (const auto looked = look(scene, *ground, **peak); !looked) return tl::unexpected(looked.error());
+      peaks.push_back(std::move(**peak));
     }
-    peak.azimuthDeg = seen.azimuthDeg, peak.elevationDeg = seen.elevationDeg, peak.trueM = seen.distanceM;
-    if (mayBeSeen(panorama, seen)) {
-      const Result<Geodetic> top = climb(ground, peak.summit, kSummitReachM);
-      if (!top) return tl::unexpected(top.error());
-      peak.ground = *top;
-      const Sighting drawn = sightingOf(options.eye, peak.ground, bend, options.earth);
-      peak.x = frame.xOf(drawn.azimuthDeg), peak.y = frame.yOf(drawn.elevationDeg), peak.groundM = drawn.distanceM;
-      peak.measuredM = measuredM(panorama, peak.x, peak.y);
-      const double sameM = std::min(kSameSummitM, kSameHillM + kSameSummitShare * std::abs(peak.summit.altM));
-      peak.visible = std::abs(peak.ground.altM - peak.summit.altM) < sameM && !std::isnan(peak.measuredM) &&
-                     !isHidden(peak.measuredM, peak.groundM);
-    }
-    peaks.push_back(std::move(peak));
+    return peaks;
+  };
+  const size_t workers = std::max(1u, std::thread::hardware_concurrency());
+  const auto bound = [&](size_t worker) { return round.size() * worker / workers; };
+  std::vector<std::future<Found>> parts;
+  for (size_t i = 1; i < workers; ++i)
+    parts.push_back(
+        std::async(std::launch::async, findIn, std::span(round).subspan(bound(i), bound(i + 1) - bound(i))));
+  Found peaks = findIn(std::span(round).first(bound(1)));
+  for (std::future<Found>& part : parts) {
+    Found more = part.get();
+    if (!more) peaks = std::move(more);
+    if (peaks && more) std::ranges::move(*more, std::back_inserter(*peaks));
   }
-  std::ranges::stable_sort(peaks, {}, &PanoramaPeak::trueM);
+  if (peaks) std::ranges::stable_sort(*peaks, {}, &PanoramaPeak::trueM);
   return peaks;
 }
 

@@ -1,6 +1,7 @@
 // Summits in a panorama: where they are drawn, whether they show, and how far the map says that they are.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "base/error.h"
@@ -19,8 +20,8 @@ struct PanoramaPeak {
   double trueM = 0;                         // eye to summit, straight
   double x = 0, y = 0;                      // of the ground's summit in the picture, pixels
   double groundM = 0;                       // eye to the ground's summit, straight
-  bool visible = false;
-  double measuredM = 0;  // in the map, just under the ground's summit; where visible
+  bool visible = false;                     // by line of sight, and the map has it
+  double measuredM = 0;                     // in the map, at the ground's summit; where visible
 };
 
 // A gazetteer's position may be off, and elevation on a raster cuts summits off: how far the highest ground is looked
@@ -30,9 +31,9 @@ inline constexpr double kSummitReachM = 250;
 // The highest ground that is reached uphill, in steps from 60 m down to 4 m.
 Result<Geodetic> climb(GroundQuery& ground, const Geodetic& from, double reachM);
 
-// Those that could be seen, by distance and height, the nearest first. `ground` is of the same terrain.
+// Those that could be seen, by distance and height, the nearest first. Opens the options' terrain; uses every core.
 Result<std::vector<PanoramaPeak>> findPeaks(const Panorama& panorama, const PanoramaOptions& options,
-                                            std::span<const Summit> summits, GroundQuery& ground);
+                                            std::span<const Summit> summits);
 
 // Where a point is drawn, in degrees; z: the straight distance, metres.
 struct Sighting {
@@ -40,9 +41,10 @@ struct Sighting {
 };
 Sighting sightingOf(const Geodetic& eye, const Geodetic& point, const SceneBend& bend, EarthShape earth);
 
-// The map's distance of a summit that is drawn at (x, y): of the pixel whose centre lies half a pixel to one and a half
-// under it, where it is drawn without doubt, or of the next where that is sky still. NaN where that is sky too.
-double measuredM(const Panorama& panorama, double x, double y);
+// The map's pixel that shows a summit which is drawn at (x, y) and `summitM` away: the one that holds the place or,
+// where that is sky or ground behind, one of the two under it. Nothing where none is about as far as the summit's own
+// slope.
+std::optional<size_t> summitPixel(const Panorama& panorama, double x, double y, double summitM);
 
 // BASE.peaks.csv. docs/PANORAMA.md has the columns.
 Result<void> writePeaks(const std::string& path, std::span<const PanoramaPeak> peaks);

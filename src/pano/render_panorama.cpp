@@ -60,6 +60,7 @@ Result<RenderedPanorama> renderPanorama(const PanoramaOptions& options) {
   panorama.eye = options.eye;
   panorama.rgba.resize(options.frame.pixels() * 4);
   panorama.distanceM.assign(options.frame.pixels(), std::numeric_limits<float>::quiet_NaN());
+  if (options.depth == DepthKind::paper) panorama.planarM = panorama.distanceM;
   std::vector<ChunkDraw> draws;
   for (int index = 0; index < kViews; ++index) {
     if (options.progress)
@@ -75,7 +76,7 @@ Result<RenderedPanorama> renderPanorama(const PanoramaOptions& options) {
     input.readColour = input.readDepth = true;
     const Result<FrameOutput> output = (*renderer)->drawFrame(input);
     if (!output) return tl::unexpected(output.error());
-    resample(view, index, output->rgba, output->depth, bend, options.depth, panorama);
+    resample(view, index, output->rgba, output->depth, bend, panorama);
   }
   return rendered;
 }

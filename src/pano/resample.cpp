@@ -109,7 +109,7 @@ ColumnRay columnRay(const PanoramaFrame& frame, const SceneBend& bend, int index
 }  // namespace
 
 void resample(const View& view, int index, std::span<const uint8_t> rgba, std::span<const float> depth,
-              const SceneBend& bend, DepthKind kind, Panorama& panorama) {
+              const SceneBend& bend, Panorama& panorama) {
   const PanoramaFrame& frame = panorama.frame;
   const auto firstOf = [&](int i) { return static_cast<int>(std::ceil(i * frame.widthPx / double(kViews) - 0.5)); };
   const int first = firstOf(index), last = firstOf(index + 1);
@@ -128,8 +128,8 @@ void resample(const View& view, int index, std::span<const uint8_t> rgba, std::s
         const std::array<uint8_t, 3> colour = sampler.colour();
         std::copy(colour.begin(), colour.end(), &panorama.rgba[pixel * 4]);
         panorama.rgba[pixel * 4 + 3] = 255;
-        panorama.distanceM[pixel] = static_cast<float>(kind == DepthKind::range ? distanceM(sampler, columnRay, rowRay)
-                                                                                : paperDistanceM(sampler));
+        panorama.distanceM[pixel] = static_cast<float>(distanceM(sampler, columnRay, rowRay));
+        if (!panorama.planarM.empty()) panorama.planarM[pixel] = static_cast<float>(paperDistanceM(sampler));
       }
     }
   };

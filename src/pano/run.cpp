@@ -92,11 +92,11 @@ Result<void> runPanorama(const PanoramaJob& job) {
 
   // The map goes out while the picture gets its names.
   auto map = std::async(std::launch::async, [&] {
-    return writeDistanceMap(job.out + ".distance.tif", panorama.distanceM, panorama.frame.widthPx,
+    return writeDistanceMap(job.out + ".distance.tif", panorama.told(), panorama.frame.widthPx,
                             panorama.frame.heightPx);
   });
   options.progress("peaks", 0.95);
-  const auto peaks = findPeaks(panorama, options, *summits, *ground);
+  const auto peaks = findPeaks(panorama, options, *summits);
   if (!peaks) return tl::unexpected(peaks.error());
   drawRidges(panorama);
   const Result<int> named = annotate(panorama, *peaks, titleOf(options));

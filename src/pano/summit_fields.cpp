@@ -1,5 +1,8 @@
 #include "pano/summit_fields.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -38,21 +41,42 @@ std::string cleanName(std::string_view text) {
   return name;
 }
 
+std::optional<double> heightFrom(std::string_view text) {
+  constexpr double kFootM = 0.3048;
+  constexpr std::array<std::string_view, 7> kMetres{"", "m", "m.", "meter", "metre", "meters", "metres"};
+  constexpr std::array<std::string_view, 6> kFeet{"ft", "ft.", "foot", "feet", "'", "\u2032"};
+  const auto isDigit = [&](size_t i) { return i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])); };
+  const size_t end = std::min(text.find_first_not_of("+-0123456789., "), text.size());
+  std::string digits, unit;
+  for (size_t i = 0; i < end; ++i) {
+    const bool setsThousandsApart =
+        text[i] == ',' && isDigit(i + 1) && isDigit(i + 2) && isDigit(i + 3) && !isDigit(i + 4);
+    if (!setsThousandsApart) digits += text[i];
+  }
+  for (const char c : text.substr(end))
+    if (c != ' ') unit += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::optional<double> number = parseNumber(digits);
+  if (!number) return std::nullopt;
+  if (std::ranges::count(kMetres, unit) > 0) return number;
+  if (std::ranges::count(kFeet, unit) > 0) return *number * kFootM;
+  return std::nullopt;
+}
+
 Result<Summit> checkedSummit(Summit summit) {
   const auto at = checkedPosition({summit.latDeg, summit.lonDeg, summit.heightM.value_or(0)});
   if (!at) return tl::unexpected(at.error());
   summit.latDeg = at->latDeg, summit.lonDeg = at->lonDeg;
-  if (summit.heightM && *summit.heightM > 9000)
+  if (summit.heightM && *summit.heightM > kHighestSummitM)
     return fail(ErrorKind::badData, fmt::format("height {} is above every summit; give metres", *summit.heightM));
   return summit;
 }
 
 Result<Summit> summitFrom(std::string_view name, std::string_view lat, std::string_view lon, std::string_view height) {
-  const auto latDeg = parseNumber(lat), lonDeg = parseNumber(lon), heightM = parseNumber(height);
+  const auto latDeg = parseNumber(lat), lonDeg = parseNumber(lon), heightM = heightFrom(height);
   if (!latDeg) return fail(ErrorKind::badData, fmt::format("latitude '{}' is not a number", lat.substr(0, 40)));
   if (!lonDeg) return fail(ErrorKind::badData, fmt::format("longitude '{}' is not a number", lon.substr(0, 40)));
   if (!height.empty() && !heightM)
-    return fail(ErrorKind::badData, fmt::format("height '{}' is not a number", height.substr(0, 40)));
+    return fail(ErrorKind::badData, fmt::format("height '{}' is not one in metres or feet", height.substr(0, 40)));
   return checkedSummit({cleanName(name), *latDeg, *lonDeg, heightM});
 }
 

@@ -1,6 +1,8 @@
+#include <map>
+
 #include <catch2/catch.hpp>
 
-#include "bench/panorama_figures.h"
+#include "bench/panorama_report.h"
 #include "bench/small_database.h"
 #include "bench/summit_places.h"
 
@@ -23,15 +25,16 @@ TEST_CASE("Distance figures: by hand") {
 TEST_CASE("Regression: a line is taken out, by folds that had no part in it") {
   std::vector<DistancePair> pairs;
   for (int i = 0; i < 42; ++i) pairs.push_back({1000.0 * i + 500, 0.9 * (1000.0 * i + 500) - 100});
-  for (const DistancePair& pair : withRegression(pairs)) CHECK(pair.toldM == Approx(pair.trueM).margin(1e-6));
+  for (const DistancePair& pair : withRegression(pairs).value()) CHECK(pair.toldM == Approx(pair.trueM).margin(1e-6));
   // One that lies: its own line would follow it, the others' does not.
   pairs[3].trueM += 5000;
-  const auto corrected = withRegression(pairs);
+  const auto corrected = withRegression(pairs).value();
   CHECK(corrected[3].toldM == Approx(0.9 * pairs[3].toldM - 100).margin(1e-6));
-  CHECK(withRegression(std::span(pairs).first(13)).front().toldM == pairs.front().toldM);  // too few
+  CHECK_FALSE(withRegression(std::span(pairs).first(13)));  // too few
+  CHECK(withRegression(std::span(pairs).first(14)));
 }
 
-TEST_CASE("Summits of the terrain itself: the highest first, apart, and in sight of each other or not") {
+TEST_CASE("Summits of the terrain itself: the highest first, apart, and places to see them from") {
   const auto reader = DatabaseReader::open(smallDatabase());
   REQUIRE(reader);
   const auto summits = terrainSummits(*reader, 20);
@@ -43,23 +46,38 @@ TEST_CASE("Summits of the terrain itself: the highest first, apart, and in sight
 
   auto ground = GroundQuery::open(smallDatabase());
   REQUIRE(ground);
-  const auto viewpoints = summitViewpoints(*summits, 1, *ground);
+  const auto viewpoints = summitViewpoints(*summits, {.mountains = 1, .valleys = 1}, *ground);
   REQUIRE(viewpoints);
-  REQUIRE(viewpoints->size() == 2);
-  const Geodetic eye = (*viewpoints)[0].eye;
-  const auto under = ground->under(eye.latDeg, eye.lonDeg);
-  REQUIRE(under);
-  CHECK(eye.altM == Approx(under->position.altM + 2));
-  // The ground at one's feet is in sight; what lies behind the mountain is not, nor is a point in the air.
-  const auto beside = ground->under(eye.latDeg + 0.0005, eye.lonDeg),
-             behind = ground->under(eye.latDeg + 0.1, eye.lonDeg);
-  REQUIRE(beside);
-  REQUIRE(behind);
-  CHECK(isInSight(*ground, eye, beside->position, 0.13, 0.01).value());
-  Geodetic deep = behind->position;
-  deep.altM -= 2000;
-  CHECK_FALSE(isInSight(*ground, eye, deep, 0.13, 0).value());
-  CHECK_FALSE(isInSight(*ground, eye, {eye.latDeg + 0.05, eye.lonDeg, 5000}, 0.13, 0).value());
+  REQUIRE(viewpoints->size() == 3);
+  for (const Viewpoint& viewpoint : *viewpoints) {
+    const auto under = ground->under(viewpoint.eye.latDeg, viewpoint.eye.lonDeg);
+    REQUIRE(under);
+    CHECK(viewpoint.eye.altM == Approx(under->position.altM + 2));
+    CHECK(under->position.altM > 1);  // not on the sea outside of the data
+  }
+  CHECK((*viewpoints)[0].eye.altM > (*viewpoints)[1].eye.altM);
+  CHECK((*viewpoints)[1].eye.altM > (*viewpoints)[2].eye.altM);
+}
+
+TEST_CASE("Panorama report: too few peaks for a line are said to be too few, and both truths are told") {
+  std::vector<MeasuredPeak> peaks;
+  for (int i = 0; i < 20; ++i) {
+    MeasuredPeak peak{.name = "p", .viewpoint = "v", .isAboveEye = i < 5};
+    peak.trueM = 5000.0 + 1000 * i, peak.groundM = 1.01 * peak.trueM;
+    peak.toldM.fill(peak.groundM);
+    peaks.push_back(peak);
+  }
+  const SuiteReport report = panoramaReport(peaks, 1);
+  const std::string page = reportHtml({.suites = {report}});
+  CHECK(page.find("no line: 5 peaks, and it takes 14") != std::string::npos);
+  std::map<std::string, nlohmann::ordered_json> rows;
+  for (const auto& row : report.rows)
+    rows[row["method"].get<std::string>() + " " + row["camera"].get<std::string>()] = row;
+  CHECK_FALSE(rows.contains("range lower_regression"));
+  REQUIRE(rows.contains("range all_regression"));
+  CHECK(rows["range all"]["mape"].get<double>() == Approx(0.01));
+  CHECK(rows["range_against_terrain all"]["mape"].get<double>() == Approx(0).margin(1e-9));
+  CHECK(report.summary["peaks_camera_lower"] == 5);
 }
 
 }  // namespace eye

@@ -42,7 +42,7 @@ TEST_CASE("Resample: a plane's distance is exact in every pixel of all eight vie
   for (int index = 0; index < kViews; ++index) {
     const View view = panoramaView(frame, kEye, bend, index);
     const std::vector<float> depth = depthOfPlane(view, normal);
-    resample(view, index, std::vector<uint8_t>(depth.size() * 4, 90), depth, bend, DepthKind::range, panorama);
+    resample(view, index, std::vector<uint8_t>(depth.size() * 4, 90), depth, bend, panorama);
   }
   double worst = 0;
   for (int row = 0; row < frame.heightPx; ++row) {
@@ -67,7 +67,7 @@ TEST_CASE("Resample: refraction is taken out of the distance") {
   const View view = panoramaView(frame, kEye, bend, 0);
   const Vec3d normal(0, 0, 1 / 200e3);  // a wall at 200 km: light falls 942 m on its way
   resample(view, 0, std::vector<uint8_t>(static_cast<size_t>(view.widthPx * view.heightPx) * 4),
-           depthOfPlane(view, normal), bend, DepthKind::range, panorama);
+           depthOfPlane(view, normal), bend, panorama);
   const int column = 45, row = 1;  // on the view's axis; 1.0 degree up
   const double levelM = 200e3 / std::cos(radFromDeg(0.25));
   const double upM =
@@ -83,7 +83,7 @@ TEST_CASE("Resample: at a silhouette one of the two distances, never one between
   std::vector<float> depth = depthOfPlane(view, {0, 0, 1e-3});
   for (size_t i = 0; i < depth.size(); i += 3) depth[i] *= 0.1f;
   for (size_t i = 1; i < depth.size(); i += 5) depth[i] = 0;
-  resample(view, 0, std::vector<uint8_t>(depth.size() * 4), depth, bend, DepthKind::range, panorama);
+  resample(view, 0, std::vector<uint8_t>(depth.size() * 4), depth, bend, panorama);
   for (int row = 0; row < frame.heightPx; ++row) {
     for (int column = 0; column < 90; ++column) {
       const double alongRay = std::cos(radFromDeg(frame.elevationDeg(row + 0.5))) *
