@@ -22,7 +22,7 @@ for program in "$build"/bin/eyepoint*; do
   [ -s "$folder/root/usr/share/bash-completion/completions/$name" ] || fail "$name: no completion"
 done
 for file in share/eyepoint/eyepoint.toml share/eyepoint/selector.toml share/eyepoint/channel-centre.toml share/applications/eyepoint.desktop \
-  share/icons/hicolor/scalable/apps/eyepoint.svg share/doc/eyepoint/LICENSE; do
+  share/icons/hicolor/scalable/apps/eyepoint.svg share/doc/eyepoint/copyright share/doc/eyepoint/changelog.gz; do
   [ -s "$folder/root/usr/$file" ] || fail "$file is missing"
 done
 depends=$(dpkg-deb -f "$package" Depends)
@@ -37,5 +37,7 @@ complete_with() {
 [[ $(complete_with eyepoint --culling "") == *dynamic* ]] || fail "completion does not know --culling's words"
 [[ $(complete_with eyepoint --log-level w) == warn ]] || fail "completion does not know --log-level's words"
 [[ $(complete_with eyepoint --dist) == "--distance-map" ]] || fail "completion does not know --distance-map"
+[[ $(complete_with eyepoint-bench com) == *compare* ]] || fail "completion does not know compare"
+[[ $(complete_with eyepoint-bench compare --up) == "--update" ]] || fail "completion does not know --update"
 [[ $(complete_with eyepoint-bake ver) == *verify* ]] || fail "completion does not know verify"
 exit "$status"

@@ -3,6 +3,7 @@ _eyepoint() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} program=${COMP_WORDS[0]} help words line
   local subcommand=
   [[ $COMP_CWORD -gt 1 && ${COMP_WORDS[1]} != -* && $program == *-bake ]] && subcommand=${COMP_WORDS[1]}
+  [[ $COMP_CWORD -gt 1 && ${COMP_WORDS[1]} =~ ^(compare|plots)$ && $program == *-bench ]] && subcommand=${COMP_WORDS[1]}
   # shellcheck disable=SC2086  # without a subcommand there is no such word
   help=$("$program" $subcommand --help 2>/dev/null) || return
   COMPREPLY=()

@@ -1,7 +1,5 @@
 #include "app/image_generator.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -11,6 +9,7 @@
 #include "app/draw_list.h"
 #include "app/terrain_probe.h"
 #include "geo/sun.h"
+#include "telemetry/cpu_time.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -19,12 +18,6 @@ namespace {
 constexpr double kDefaultVisibilityM = 60000;
 constexpr double kTimeOfDayH = 9;
 constexpr double kFrameBudgetMs = 1000.0 / 60;
-
-double processCpuMs() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
-}
 
 // Over the middle of the terrain's data, until a live host has spoken.
 Pose waitingPose(const DatabaseInfo& info) {

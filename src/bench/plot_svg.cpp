@@ -10,6 +10,7 @@ namespace eye {
 namespace {
 
 constexpr double kWidth = 960, kHeight = 330;
+constexpr double kLetter = 6.6;  // of 12 px type, on average
 constexpr double kLeft = 64, kRight = 14, kTop = 34, kBottom = 46;
 // Told apart on light and dark ground, and by the colour-blind (Okabe and Ito, a little darker).
 constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#c4639a", "#b58900", "#3aa0d8", "#7f7f7f"};
@@ -92,12 +93,17 @@ std::string frame(const ReportPlot& plot, const Axis& y) {
   svg += text(xPx(0.5), kHeight - 6, "middle", plot.xLabel);
   svg +=
       text(14, yPx(0.5), "middle", plot.yLabel, fmt::format(" transform=\"rotate(-90 14 {:.1f})\"", yPx(0.5)).c_str());
-  double x = kLeft;
+  double x = kLeft, line = 8;
   for (size_t i = 0; i < plot.series.size(); ++i) {
-    svg += fmt::format("<rect x=\"{:.1f}\" y=\"8\" width=\"12\" height=\"12\" rx=\"2\" fill=\"{}\"/>", x,
+    const double wide = 36 + kLetter * static_cast<double>(plot.series[i].name.size());
+    if (x > kLeft && x + wide > kWidth) {  // into the plot's own room, rather than out of the picture
+      x = kLeft;
+      line += 17;
+    }
+    svg += fmt::format("<rect x=\"{:.1f}\" y=\"{}\" width=\"12\" height=\"12\" rx=\"2\" fill=\"{}\"/>", x, line,
                        kColours[i % kColours.size()]);
-    svg += text(x + 17, 18, "start", plot.series[i].name, " class=\"legend\"");
-    x += 36 + 7.0 * static_cast<double>(plot.series[i].name.size());
+    svg += text(x + 17, line + 10, "start", plot.series[i].name, " class=\"legend\"");
+    x += wide;
   }
   return svg;
 }
@@ -157,15 +163,40 @@ std::string lines(const ReportPlot& plot, const Axis& y) {
 
 }  // namespace
 
-std::string plotSvg(const ReportPlot& plot) {
+namespace {
+
+std::string drawing(const ReportPlot& plot) {
   Range range;
   for (const Series& series : plot.series)
     for (const double value : series.y)
       if (!plot.isLogarithmic || value > 0) range.add(value);
   const bool isBars = !plot.categories.empty();
   const Axis y = plot.isLogarithmic ? logarithmicAxis(range) : linearAxis(range, isBars || plot.isFromZero);
-  return fmt::format("<svg viewBox=\"0 0 {} {}\" width=\"{}\" role=\"img\" aria-label=\"{}\">{}{}</svg>", kWidth,
-                     kHeight, kWidth, escapeHtml(plot.title), frame(plot, y), isBars ? bars(plot, y) : lines(plot, y));
+  return frame(plot, y) + (isBars ? bars(plot, y) : lines(plot, y));
+}
+
+// The page's colours, for a picture that has no page; readers of SVG ask for light or dark as browsers do.
+constexpr const char* kPictureStyle =
+    "svg{color-scheme:light dark;--ink:#1c2733;--soft:#5b6b7b;--line:#d8dfe6;--card:#fff}"
+    "@media(prefers-color-scheme:dark){svg{--ink:#e4e9ee;--soft:#9aa8b5;--line:#33404c;--card:#1c242c}}"
+    "text{fill:var(--soft);font:12px system-ui,sans-serif}.axis{stroke:var(--line)}.legend{fill:var(--ink)}"
+    ".title{fill:var(--ink);font:600 15px system-ui,sans-serif}.card{fill:var(--card)}";
+constexpr double kTitle = 34, kMargin = 8;
+
+}  // namespace
+
+std::string plotSvg(const ReportPlot& plot) {
+  return fmt::format("<svg viewBox=\"0 0 {} {}\" width=\"{}\" role=\"img\" aria-label=\"{}\">{}</svg>", kWidth, kHeight,
+                     kWidth, escapeHtml(plot.title), drawing(plot));
+}
+
+std::string plotPicture(const ReportPlot& plot) {
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">"
+      "<style>{2}</style><rect class=\"card\" width=\"{0}\" height=\"{1}\" rx=\"8\"/>{3}"
+      "<g transform=\"translate(0 {4})\">{5}</g></svg>\n",
+      kWidth + kMargin, kHeight + kTitle + kMargin, kPictureStyle,
+      text(kLeft, 24, "start", plot.title, " class=\"title\""), kTitle, drawing(plot));
 }
 
 }  // namespace eye

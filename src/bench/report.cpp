@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/plot_json.h"
+
 namespace eye {
 namespace {
 
@@ -21,6 +23,12 @@ Result<void> writeText(const std::filesystem::path& path, const std::string& tex
   if (file) return {};
   return fail(ErrorKind::io, fmt::format("{}: cannot write: {}; free space or choose another --out", path.string(),
                                          std::strerror(errno)));
+}
+
+nlohmann::ordered_json jsonOf(const MachineSpeed& speed) {
+  nlohmann::ordered_json json{{"loop_ms", speed.loopMs}, {"draw_ms", nullptr}};
+  if (speed.drawMs) json["draw_ms"] = *speed.drawMs;
+  return json;
 }
 
 }  // namespace
@@ -49,7 +57,9 @@ std::string reportJson(const Report& report) {
                               {"settings", report.settings},
                               {"suites", nlohmann::ordered_json::object()}};
   for (const SuiteReport& suite : report.suites)
-    json["suites"][suite.name] = {{"summary", suite.summary}, {"rows", suite.rows}};
+    json["suites"][suite.name] = {{"title", suite.title},           {"summary", suite.summary}, {"rows", suite.rows},
+                                  {"speed", jsonOf(suite.speed)},   {"wall_s", suite.wallS},    {"cpu_s", suite.cpuS},
+                                  {"plots", plotsJson(suite.plots)}};
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "bench/machine_speed.h"
 
 namespace eye {
 
@@ -49,11 +50,13 @@ struct SuiteReport {
   std::string name{}, title{}, introduction{};
   nlohmann::ordered_json summary = nlohmann::ordered_json::object();
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  std::vector<ReportPlot> plots{};
+  MachineSpeed speed{};        // while it ran
+  double wallS = 0, cpuS = 0;  // that it took
   // For the page alone.
   std::string device{};  // that drew
   std::vector<ReportTarget> targets{};
   std::vector<ReportTable> tables{};
-  std::vector<ReportPlot> plots{};
   std::vector<std::string> notes{};  // how to read it
 };
 
@@ -70,6 +73,8 @@ std::string reportHtml(const Report& report);
 std::string tableText(const ReportTable& table);  // aligned columns, for a terminal
 // An inline picture, readable on light and on dark pages.
 std::string plotSvg(const ReportPlot& plot);
+// The same as a file of its own, with its title.
+std::string plotPicture(const ReportPlot& plot);
 std::string escapeHtml(const std::string& text);
 
 // Both files into a folder, which is made where it is missing.

@@ -60,9 +60,9 @@ Result<SuiteReport> runStabilitySuite(const SuiteOptions& options) {
                             fmt::format("{} of {}", figures.size() - static_cast<size_t>(failures), figures.size()),
                             failures == 0});
   report.tables.push_back(tableOf(figures));
-  report.notes.push_back(
+  report.notes = {
       "Vertices: the vertex shader's arithmetic repeated in floats on the CPU against doubles, at random "
-      "views; 1,280 pixels wide. Limits of pixels: a tenth, which nobody sees.");
+      "views; 1,280 pixels wide. Limits of pixels: a tenth, which nobody sees."};
   return report;
 }
 

@@ -9,6 +9,7 @@
 
 #include "app/config_file.h"
 #include "app/options.h"
+#include "support/places.h"
 
 using namespace eye;
 
@@ -220,7 +221,7 @@ TEST_CASE("the configuration file's values have the types of their options") {
 }
 
 TEST_CASE("every documented key of the example configuration is known") {
-  const ParsedOptions parsed = parse({"--config", EYE_SOURCE_DIR "/config/eyepoint.toml"});
+  const ParsedOptions parsed = parse({"--config", eye::test::kSourceDir + "/config/eyepoint.toml"});
   INFO(parsed.text);
   CHECK_FALSE(parsed.exitStatus);
 }
@@ -228,7 +229,7 @@ TEST_CASE("every documented key of the example configuration is known") {
 TEST_CASE("the example channels look left, ahead and right, and one of them answers") {
   const std::pair<std::string, double> channels[] = {{"left", -60}, {"centre", 0}, {"right", 60}};
   for (const auto& [name, headingDeg] : channels) {
-    const std::string path = EYE_SOURCE_DIR "/config/channel-" + name + ".toml";
+    const std::string path = eye::test::kSourceDir + "/config/channel-" + name + ".toml";
     const ParsedOptions parsed = parse({"--config", path.c_str()});
     INFO(name << ": " << parsed.text);
     REQUIRE_FALSE(parsed.exitStatus);

@@ -7,6 +7,7 @@
 #include "bake/mesher.h"
 #include "bake/post_surface.h"
 #include "support/cluster_checks.h"
+#include "support/places.h"
 
 using namespace eye;
 using namespace eye::test;
@@ -46,10 +47,10 @@ TEST_CASE("Clusters of a rough globe's tiles hold what they say, at poles and da
 }
 
 TEST_CASE("Clusters of real mountains hold what they say") {
-  const std::string file = std::string(EYE_TEST_DATA) + "/dem/carpathia/N49E020.hgt";
+  const std::string file = eye::test::kTestData + "/dem/carpathia/N49E020.hgt";
   const auto tatras = ElevationMosaic::open({file});
   if (!tatras) {
-    WARN("no dem/carpathia/N49E020.hgt under " EYE_TEST_DATA ": not tested");
+    WARN("no dem/carpathia/N49E020.hgt under " << eye::test::kTestData << ": not tested");
     return;
   }
   std::mt19937 random(12);

@@ -11,6 +11,7 @@
 #include "bake/vertical_datum.h"
 #include "raster/encode.h"
 #include "raster_files.h"
+#include "support/places.h"
 
 using namespace eye;
 
@@ -298,7 +299,7 @@ TEST_CASE("A vertical datum lifts heights by its undulation") {
 }
 
 TEST_CASE("Real tiles: twelve files make one layer with posts at whole arc-seconds") {
-  const std::string folder = std::string(EYE_TEST_DATA) + "/dem/carpathia";
+  const std::string folder = eye::test::kTestData + "/dem/carpathia";
   if (!std::filesystem::exists(folder)) {
     WARN("no real elevation in " << folder);
     return;

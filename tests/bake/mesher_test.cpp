@@ -10,6 +10,7 @@
 
 #include "bake/mesh_probe.h"
 #include "bake/post_surface.h"
+#include "support/places.h"
 
 using namespace eye;
 using namespace eye::test;
@@ -165,7 +166,7 @@ double toleranceOf(int level) {
 // One degree of real posts, extended beyond its borders by its outermost posts; voids take their neighbour's height.
 std::optional<PostSurface> readDegree(const std::string& name, int southDeg, int westDeg) {
   constexpr int kSide = 1201;
-  std::ifstream file(std::string(EYE_TEST_DATA) + "/dem/" + name, std::ios::binary);
+  std::ifstream file(eye::test::kTestData + "/dem/" + name, std::ios::binary);
   std::vector<char> bytes(size_t{kSide} * kSide * 2);
   if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) return std::nullopt;
   auto posts = std::make_shared<std::vector<double>>();
@@ -222,7 +223,7 @@ TEST_CASE("The error is bounded on a rough globe: coarse tiles, poles, the date 
 TEST_CASE("The error is bounded on real mountains") {
   const std::optional<PostSurface> tatras = readDegree("carpathia/N49E020.hgt", 49, 20);
   if (!tatras) {
-    WARN("no dem/carpathia/N49E020.hgt under " EYE_TEST_DATA ": not tested");
+    WARN("no dem/carpathia/N49E020.hgt under " << eye::test::kTestData << ": not tested");
     return;
   }
   for (int level = 8; level <= 14; ++level) {
@@ -261,7 +262,7 @@ TEST_CASE("Neighbours of one level share their edges' lattice points and normals
 TEST_CASE("Real neighbours share their edges") {
   const std::optional<PostSurface> tatras = readDegree("carpathia/N49E020.hgt", 49, 20);
   if (!tatras) {
-    WARN("no dem/carpathia/N49E020.hgt under " EYE_TEST_DATA ": not tested");
+    WARN("no dem/carpathia/N49E020.hgt under " << eye::test::kTestData << ": not tested");
     return;
   }
   for (const int level : {10, 12, 14}) CHECK(checkSides(*tatras, TileKey::containing(49.2, 20.2, level), 1.0) > 40);

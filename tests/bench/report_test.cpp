@@ -47,9 +47,13 @@ TEST_CASE("report.html escapes all that it is given and needs no other file") {
   for (const char* raw : {"<script>", "<b>title", "<machine>", "note </li></li>", "aim <1>", "<td><td>"})
     CHECK(countOf(html, raw) == 0);
   CHECK(countOf(html, "&lt;script&gt;") == 1);
-  CHECK(countOf(html, "class=\"reached\"") == 1);
-  CHECK(countOf(html, "class=\"missed\"") == 1);
-  for (const char* outside : {"http:", "https:", "src=", "href=", "@import"}) CHECK(countOf(html, outside) == 0);
+  CHECK(countOf(html, "<li class=\"reached\"") == 1);
+  CHECK(countOf(html, "<li class=\"missed\"") == 1);
+  CHECK(countOf(html, "1 of 2 aims reached") == 1);
+  for (const char* outside : {"http:", "https:", "src=", "@import"}) CHECK(countOf(html, outside) == 0);
+  CHECK(countOf(html, "href=\"#") == countOf(html, "href="));
+  CHECK(countOf(html, "href=\"#culling\"") == 1);
+  CHECK(countOf(html, "id=\"culling\"") == 1);
 }
 
 TEST_CASE("Plots draw every value that there is, inside of the picture") {

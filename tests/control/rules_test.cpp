@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "control/selector_rules.h"
+#include "support/places.h"
 
 using namespace eye;
 
@@ -31,7 +32,7 @@ std::string errorOf(const std::string& text) {
 }  // namespace
 
 TEST_CASE("the installed rules file is the built-in defaults, key for key") {
-  const std::string path = EYE_SOURCE_DIR "/config/selector.toml";
+  const std::string path = eye::test::kSourceDir + "/config/selector.toml";
   const Result<SelectorRules> rules = loadSelectorRules(path);
   REQUIRE(rules);
   CHECK(*rules == SelectorRules{});

@@ -10,6 +10,7 @@
 #include "culling/poses.h"
 #include "render/cull_mirror.h"
 #include "shared/cull_types.h"
+#include "support/places.h"
 
 namespace eye::test {
 namespace {
@@ -177,9 +178,9 @@ void compareFlight(const std::string& database, int frames, int widthPx, int hei
 
 // Of four SRTM tiles of the Tatras; empty, with a warning, where they are not here.
 std::string tatras() {
-  const std::string path = EYE_TEST_FILES "/carpathia.eyt";
+  const std::string path = eye::test::kTestFiles + "/carpathia.eyt";
   if (std::filesystem::exists(path)) return path;
-  WARN("no elevation of the Tatras in " EYE_TEST_DATA ": culling is not tested over real mountains");
+  WARN("no elevation of the Tatras in " << eye::test::kTestData << ": culling is not tested over real mountains");
   return {};
 }
 

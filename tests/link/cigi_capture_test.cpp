@@ -9,6 +9,7 @@
 #include "link/cigi.h"
 #include "link/pcap.h"
 #include "link/track_file.h"
+#include "support/places.h"
 
 namespace eye {
 namespace {
@@ -18,7 +19,7 @@ using namespace eye::cigi;
 
 // Nothing, with a warning, where there are no recordings.
 std::optional<std::vector<std::byte>> recording(const std::string& name) {
-  const std::string path = std::string(EYE_TEST_DATA) + "/" + name;
+  const std::string path = eye::test::kTestData + "/" + name;
   auto file = readTrackFile(path);
   if (!file) {
     WARN("no recording " << path);

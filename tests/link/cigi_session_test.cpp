@@ -10,6 +10,7 @@
 #include "link/native_fdm.h"
 #include "link/pcap.h"
 #include "link/track_file.h"
+#include "support/places.h"
 
 namespace eye {
 namespace {
@@ -97,7 +98,7 @@ double metresBetween(const Pose& a, const Pose& b) {
 TEST_CASE(
     "session: a recorded flight is where its packets say, in both versions, and its side view where a matrix is") {
   for (const char* name : {"cigi33_ccl_c1723.pcap", "cigi40_ccl_c1723.pcap"}) {
-    const auto file = readTrackFile(std::string(EYE_TEST_DATA) + "/captures/" + name);
+    const auto file = readTrackFile(eye::test::kTestData + "/captures/" + name);
     if (!file) {
       WARN("no recording " << name);
       return;

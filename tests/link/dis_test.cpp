@@ -8,6 +8,7 @@
 #include "dissection.h"
 #include "link/angles.h"
 #include "link/pcap.h"
+#include "support/places.h"
 
 namespace eye {
 namespace {
@@ -211,7 +212,7 @@ TEST_CASE("DIS: Wireshark reads what is built as it was meant") {
 }
 
 TEST_CASE("DIS: a recorded walker stands where Wireshark says") {
-  const std::string source = std::string(EYE_TEST_DATA) + "/cigi/DIS_EntityState_1.pcapng";
+  const std::string source = eye::test::kTestData + "/cigi/DIS_EntityState_1.pcapng";
   const auto path = std::filesystem::temp_directory_path() / ("eyepoint_dis_" + std::to_string(::getpid()) + ".pcap");
   const int status = std::system(("tshark -r " + source + " -F pcap -w " + path.string() + " 2>/dev/null").c_str());
   std::ifstream stream(path, std::ios::binary);

@@ -8,6 +8,7 @@
 #include "link/pcap.h"
 #include "link/track_file.h"
 #include "packets.h"
+#include "support/places.h"
 
 namespace eye {
 namespace {
@@ -159,7 +160,7 @@ TEST_CASE("real JSBSim captures: every packet is read") {
   const std::pair<const char*, size_t> captures[] = {{"jsbsim_c1723_takeoff.pcap", 6602},
                                                      {"jsbsim_737_cruise.pcap", 3602}};
   for (const auto& [name, count] : captures) {
-    const auto file = readTrackFile(std::string(EYE_TEST_DATA) + "/captures/" + name);
+    const auto file = readTrackFile(eye::test::kTestData + "/captures/" + name);
     if (!file) {
       WARN("not tested: " << file.error().message);
       return;

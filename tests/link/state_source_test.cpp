@@ -5,6 +5,7 @@
 
 #include "link/endpoint.h"
 #include "link/scenario.h"
+#include "support/places.h"
 
 namespace eye {
 namespace {
@@ -86,7 +87,7 @@ TEST_CASE("a fixed pose never ends, a scenario does") {
 }
 
 TEST_CASE("a recording is flown at its own time") {
-  const auto source = openStateSource(std::string("file://") + EYE_TEST_DATA + "/captures/jsbsim_c1723_takeoff.pcap");
+  const auto source = openStateSource("file://" + eye::test::kTestData + "/captures/jsbsim_c1723_takeoff.pcap");
   if (!source) {
     WARN("not tested: " << source.error().message);
     return;

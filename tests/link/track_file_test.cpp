@@ -9,6 +9,7 @@
 
 #include "geo/frames.h"
 #include "packets.h"
+#include "support/places.h"
 
 namespace eye {
 namespace {
@@ -159,7 +160,7 @@ TEST_CASE("real IGC flights are read and fly plausibly") {
                                                   {"glider_nimbus4_frenchalps_1hz.igc", 27000},
                                                   {"helicopter_germany_4s.igc", 900}};
   for (const auto& [name, atLeast] : files) {
-    const std::string path = fmt::format("{}/tracks/igc/{}", EYE_TEST_DATA, name);
+    const std::string path = fmt::format("{}/tracks/igc/{}", eye::test::kTestData, name);
     const auto track = loadTrack(path);
     if (!track && track.error().kind == ErrorKind::notFound) {
       WARN("not tested: " << track.error().message);

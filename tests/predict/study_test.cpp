@@ -9,6 +9,7 @@
 #include "bench/prediction_study.h"
 #include "geo/frames.h"
 #include "link/track_file.h"
+#include "support/places.h"
 
 namespace eye {
 namespace {
@@ -70,7 +71,7 @@ TEST_CASE("Errors in standard-rate turns are the ones that are known") {
 }
 
 TEST_CASE("Recorded flights are predicted better than by holding still or flying straight on") {
-  const Result<Track> track = loadTrack(std::string(EYE_TEST_DATA) + "/captures/jsbsim_c1723_takeoff.pcap");
+  const Result<Track> track = loadTrack(eye::test::kTestData + "/captures/jsbsim_c1723_takeoff.pcap");
   if (!track) {
     WARN("no recordings: " << track.error().message);
     return;
@@ -95,7 +96,7 @@ TEST_CASE("Table of prediction errors", "[.][table]") {
   for (const char* file : {"tracks/igc/glider_australia_1s.igc", "tracks/igc/glider_nimbus4_frenchalps_1hz.igc",
                            "tracks/igc/helicopter_germany_4s.igc", "captures/jsbsim_737_cruise.pcap",
                            "captures/jsbsim_c1723_takeoff.pcap"}) {
-    const Result<Track> track = loadTrack(std::string(EYE_TEST_DATA) + "/" + file);
+    const Result<Track> track = loadTrack(eye::test::kTestData + "/" + file);
     if (!track) {
       WARN("no " << file << ": " << track.error().message);
       continue;

@@ -10,6 +10,7 @@
 
 #include "link/cigi_host.h"
 #include "link/track_file.h"
+#include "support/places.h"
 #include "system/live_run.h"
 #include "system/program.h"
 #include "truth/wgs84.h"
@@ -45,7 +46,7 @@ TEST_CASE("CIGI: a recorded session over UDP drives the picture in both versions
   const std::string database = carpathiaDatabase();
   for (const std::string version : {"3.3", "4.0"}) {
     const std::string capture =
-        fmt::format("{}/captures/cigi{}{}_ccl_c1723.pcap", EYE_TEST_DATA, version[0], version[2]);
+        fmt::format("{}/captures/cigi{}{}_ccl_c1723.pcap", eye::test::kTestData, version[0], version[2]);
     if (database.empty() || !std::filesystem::exists(capture)) {
       WARN("no " << capture << " or no terrain: this test checks nothing");
       return;

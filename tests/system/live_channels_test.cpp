@@ -8,6 +8,7 @@
 #include <future>
 #include <map>
 
+#include "support/places.h"
 #include "system/live_run.h"
 #include "system/program.h"
 #include "system/rasters.h"
@@ -35,7 +36,7 @@ ProgramRun fly(const Channel& channel, const std::string& database, uint16_t por
                      "--terrain",
                      database,
                      "--config",
-                     EYE_SOURCE_DIR "/config/channel-" + channel.config + ".toml",
+                     eye::test::kSourceDir + "/config/channel-" + channel.config + ".toml",
                      "--host",
                      fmt::format("cigi://{}:{}?interface=127.0.0.1{}", kGroup, port, answers ? "" : "&answers=no"),
                      "--view-offset",

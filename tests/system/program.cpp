@@ -1,4 +1,5 @@
 #include "system/program.h"
+#include "support/places.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -81,7 +82,7 @@ ProgramRun runProgram(const std::string& program, const std::vector<std::string>
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err[1], STDERR_FILENO);
-  std::vector<std::string> words{std::string(EYE_BIN_DIR) + "/" + program}, variables = environmentWith(settings);
+  std::vector<std::string> words{eye::test::kBinDir + "/" + program}, variables = environmentWith(settings);
   words.insert(words.end(), arguments.begin(), arguments.end());
   pid_t pid = -1;
   const int failed =
@@ -103,7 +104,7 @@ ProgramRun runProgram(const std::string& program, const std::vector<std::string>
 }
 
 std::string testFile(const std::string& name) {
-  const std::filesystem::path path = std::filesystem::path(EYE_TEST_FILES) / name;
+  const std::filesystem::path path = std::filesystem::path(eye::test::kTestFiles) / name;
   std::filesystem::create_directories(path.parent_path());
   return path.string();
 }

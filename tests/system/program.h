@@ -25,7 +25,7 @@ struct RunSettings {
 ProgramRun runProgram(const std::string& program, const std::vector<std::string>& arguments,
                       const RunSettings& settings = {});
 
-// EYE_TEST_FILES/name, its folder made where it is missing.
+// kTestFiles/name, its folder made where it is missing.
 std::string testFile(const std::string& name);
 std::string joined(const std::vector<std::string>& words);
 std::string readText(const std::string& path);

@@ -9,6 +9,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
+#include "support/places.h"
 #include "system/live_run.h"
 #include "system/program.h"
 #include "truth/wgs84.h"
@@ -49,7 +50,7 @@ std::vector<Place> positionsIn(const std::string& capture) {
 }  // namespace
 
 TEST_CASE("replay: a take-off over UDP drives the picture, no packet lost, position to the millimetre") {
-  const std::string capture = std::string(EYE_TEST_DATA) + "/captures/jsbsim_c1723_takeoff.pcap";
+  const std::string capture = eye::test::kTestData + "/captures/jsbsim_c1723_takeoff.pcap";
   const std::string database = carpathiaDatabase();
   if (database.empty() || !std::filesystem::exists(capture)) {
     WARN("no " << capture << " or no terrain: this test checks nothing");

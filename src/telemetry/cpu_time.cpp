@@ -1,0 +1,24 @@
+#include "telemetry/cpu_time.h"
+
+#include <time.h>
+
+namespace eye {
+namespace {
+
+double clockMs(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
+}
+
+}  // namespace
+
+double processCpuMs() {
+  return clockMs(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+double threadCpuMs() {
+  return clockMs(CLOCK_THREAD_CPUTIME_ID);
+}
+
+}  // namespace eye
