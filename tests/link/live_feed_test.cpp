@@ -74,6 +74,12 @@ cigi::Entity cigiEntity(double altM, cigi::EntityState state = cigi::EntityState
   return {0, traits, cigi::EntityPlace{cigi::Clamp::none, 0, -3, 2, 30, poseAt(altM).position}};
 }
 
+cigi::ReceiverOptions silent() {
+  cigi::ReceiverOptions options;
+  options.silent = true;
+  return options;
+}
+
 // The first that speaks is heard, a second one when that has been silent.
 template <class Receiver, class Packet>
 void checkLock(Fed<Receiver>& fed, const Packet& packet, int64_t silenceNs) {
@@ -101,7 +107,7 @@ TEST_CASE("live feed: every protocol is locked to the first host that speaks, un
   Fed<DisReceiver> disFed(HostLock({}, kDisTimeOutNs), "test", std::nullopt);
   checkLock(
       disFed, [](double altM) { return dis(altM); }, kDisTimeOutNs);
-  Fed<cigi::Receiver> cigiFed(HostLock(), "test", cigi::ReceiverOptions{.silent = true}, OpenProbe{});
+  Fed<cigi::Receiver> cigiFed(HostLock(), "test", silent(), OpenProbe{});
   uint32_t frame = 500;
   checkLock(
       cigiFed, [&](double altM) { return cigiMessage(--frame, {cigiEntity(altM)}); }, kHostSilenceNs);
@@ -147,7 +153,7 @@ TEST_CASE("live feed: a DIS PDU that was overtaken does not steer back") {
 }
 
 TEST_CASE("live feed: a CIGI message that was overtaken changes nothing at all") {
-  Fed<cigi::Receiver> fed(HostLock(), "test", cigi::ReceiverOptions{.silent = true}, OpenProbe{});
+  Fed<cigi::Receiver> fed(HostLock(), "test", silent(), OpenProbe{});
   const auto hear = [&](uint32_t frame, const std::vector<cigi::Packet>& packets) {
     fed.nowNs += 10 * kMs;
     return fed.hear(cigiMessage(frame, packets));
@@ -183,7 +189,7 @@ TEST_CASE("live feed: a CIGI message that was overtaken changes nothing at all")
 }
 
 TEST_CASE("live feed: lens and clock are told while the eye's entity is gone") {
-  Fed<cigi::Receiver> fed(HostLock(), "test", cigi::ReceiverOptions{.silent = true}, OpenProbe{});
+  Fed<cigi::Receiver> fed(HostLock(), "test", silent(), OpenProbe{});
   cigi::ViewDefinition lens;
   lens.leftDegOrM = -20;
   cigi::CelestialSphere sky;
@@ -199,7 +205,7 @@ TEST_CASE("live feed: lens and clock are told while the eye's entity is gone") {
 }
 
 TEST_CASE("live feed: what came between two frames is told in order, at the host's moments, and bounded") {
-  Fed<cigi::Receiver> fed(HostLock(), "test", cigi::ReceiverOptions{.silent = true}, OpenProbe{});
+  Fed<cigi::Receiver> fed(HostLock(), "test", silent(), OpenProbe{});
   const int64_t beganNs = fed.nowNs;
   uint32_t frame = 0;
   for (; frame < 300; ++frame) {  // held up for 0, 7 or 14 ms
@@ -220,7 +226,7 @@ TEST_CASE("live feed: what came between two frames is told in order, at the host
 }
 
 TEST_CASE("live feed: by rates a pose goes on for a fifth of a second, DIS's until its time-out") {
-  Fed<cigi::Receiver> fed(HostLock(), "test", cigi::ReceiverOptions{.silent = true}, OpenProbe{});
+  Fed<cigi::Receiver> fed(HostLock(), "test", silent(), OpenProbe{});
   cigi::Velocity climb;
   climb.zMS = -10;
   CHECK(fed.hear(cigiMessage(1, {cigiEntity(100), climb})));
