@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/live_show.h"
-#include "link/ground_probe.h"
+#include "link/state_source.h"
 
 namespace eye {
 
@@ -18,18 +18,20 @@ struct TransportDelay {
 std::vector<TransportDelay> transportDelays(const std::vector<ShownFrame>& frames, const NumberedPoses& poses,
                                             const SteadyHost& host);
 
-enum class FloodKind { none, elsewhere, garbage, valid };
+enum class FloodKind { none, elsewhere, garbage, strangersState, hostsGarbage, hostsState };
 
 struct FloodFigures {
   std::vector<double> frameMs;
   double sentHz = 0, receivedHz = 0;
   double followedShare = 0;  // of the frames that show a pose not older than kFollowedS
   double grownMiB = 0;       // resident memory, from before to after
+  double linkShare = 0;      // of a core, that the thread takes which receives
 };
 inline constexpr double kFloodHz = 100'000;
 inline constexpr double kFollowedS = 0.1;
 // `elsewhere`: to a socket that nobody reads, so that what sending costs the machine can be told from what receiving
-// costs the image generator.
+// costs the image generator. `garbage` and `strangersState` come from another address and port than the host's state
+// and go to where that arrives; the host's own come from its socket, with its state between them.
 Result<FloodFigures> showUnderFlood(LiveShow& show, HostProtocol protocol, FloodKind kind, const NumberedPoses& poses,
                                     double durationS);
 
@@ -39,14 +41,15 @@ Result<double> trackErrorM(LiveShow& show, HostProtocol protocol, const std::fun
                            double durationS, const BadLinkOptions& link);
 
 inline constexpr int kQuestions = 1000;
-// A thousand heights and a thousand lines of sight round a place, of up to some kilometres.
+// A thousand heights round a place; a thousand lines of sight from there, level, in all directions.
 std::vector<cigi::GroundQuestion> heightsRound(const Geodetic& place);
-std::vector<cigi::GroundQuestion> sightsRound(const Geodetic& place);
-// The calling thread's time for all of them, when their terrain has been read before, and the longest of one; ms.
+std::vector<cigi::GroundQuestion> sightsRound(const Geodetic& place, double lengthM);
+// The calling thread's time for all of them, ms: with nothing in memory but what the system keeps of the file; and when
+// they have been asked before, the median of some rounds.
 struct AnswerTimes {
-  double allMs = 0, longestMs = 0;
+  double coldMs = 0, warmMs = 0;
 };
-AnswerTimes timeAnswers(const std::vector<cigi::GroundQuestion>& questions, GroundProbe& probe);
+Result<AnswerTimes> timeAnswers(const std::vector<cigi::GroundQuestion>& questions, const OpenProbe& openProbe);
 
 // A CIGI host that asks for a thousand heights with each of its frames.
 struct AskedAndAnswered {

@@ -15,17 +15,24 @@ namespace eye {
 namespace {
 
 constexpr double kShowS = 20, kQuickShowS = 3;
-constexpr double kFloodS = 30, kQuickFloodS = 5;
-constexpr int kFloodRounds = 2;  // each kind in turn, so that a busy minute slows all of them
+constexpr double kFloodS = 60, kQuickFloodS = 10;
+constexpr int kFloodRounds = 3;  // parts of these seconds: each kind in turn, so that a busy minute slows all of them
 constexpr double kTrackS = 30, kQuickTrackS = 3;
 constexpr double kAboveGroundM = 600;
 constexpr double kMostWaitMs = 1000 / kHostRateHz, kMostFloodCost = 1.10, kMostAnswersMs = 1;
 // A packet leaves, is received and taken by threads that wake up: this much is not the protocol's.
 constexpr double kWakingMs = 1;
 constexpr BadLinkOptions kBadLink{.jitterMs = 30, .loss = 0.2, .duplicate = 0.1, .reorder = 0.1, .seed = 1};
-constexpr std::array kFloods{FloodKind::none, FloodKind::elsewhere, FloodKind::garbage, FloodKind::valid};
-constexpr const char* kFloodNames[] = {"no flood", "flood of a socket that nobody reads", "flood of garbage",
-                                       "flood of valid state"};
+constexpr std::array kFloods{FloodKind::none,           FloodKind::elsewhere,    FloodKind::garbage,
+                             FloodKind::strangersState, FloodKind::hostsGarbage, FloodKind::hostsState};
+constexpr const char* kFloodNames[] = {"no flood",
+                                       "flood of a socket that nobody reads",
+                                       "flood of garbage from a stranger",
+                                       "flood of valid state from a stranger",
+                                       "flood of garbage from the host",
+                                       "flood of valid state from the host"};
+constexpr size_t kFirstReceived = 2;  // of these
+constexpr std::array kSightLengthsM{1000.0, 10'000.0, 50'000.0};
 
 class HostSuite {
  public:
@@ -37,7 +44,8 @@ class HostSuite {
         "machine. "
         "What sending costs is measured too: a flood comes from the same cores.";
     report_.tables.push_back({.caption = "Figures", .columns = {"case", "protocol", "value", "unit"}});
-    steps_ = options.quick ? 3 + 4 + 2 + 2 : 3 + 2 * 4 * kFloodRounds + 4 + 2;
+    const int floods = static_cast<int>(kFloods.size()) * kFloodRounds;
+    steps_ = options.quick ? 3 + floods + 2 + 2 : 3 + 2 * floods + 4 + 2;
   }
 
   Result<SuiteReport> run() {
@@ -120,12 +128,12 @@ class HostSuite {
     if (!show) return tl::unexpected(show.error());
     const NumberedPoses poses(start());
     std::array<FloodFigures, kFloods.size()> all{};
-    const int rounds = options_.quick ? 1 : kFloodRounds;
+    constexpr int rounds = kFloodRounds;
     for (int round = 0; round < rounds; ++round) {
       for (size_t i = 0; i < kFloods.size(); ++i) {
         begin(fmt::format("{}: {}", name, kFloodNames[i]));
         const auto figures =
-            showUnderFlood(*show, protocol, kFloods[i], poses, options_.quick ? kQuickFloodS : kFloodS);
+            showUnderFlood(*show, protocol, kFloods[i], poses, (options_.quick ? kQuickFloodS : kFloodS) / rounds);
         if (!figures) return tl::unexpected(figures.error());
         FloodFigures& sum = all[i];
         sum.frameMs.insert(sum.frameMs.end(), figures->frameMs.begin(), figures->frameMs.end());
@@ -133,6 +141,7 @@ class HostSuite {
         sum.receivedHz += figures->receivedHz / rounds;
         sum.followedShare += figures->followedShare / rounds;
         sum.grownMiB = std::max(sum.grownMiB, figures->grownMiB);
+        sum.linkShare += figures->linkShare / rounds;
       }
     }
     std::array<TimeSummary, kFloods.size()> frame;
@@ -145,8 +154,11 @@ class HostSuite {
       add(name, what + ": received", all[i].receivedHz, "1/s");
       add(name, what + ": frames that follow within 0.1 s", all[i].followedShare, "share");
       add(name, what + ": memory grown", all[i].grownMiB, "MiB");
+      add(name, what + ": receiving thread", all[i].linkShare, "of a core");
     }
-    for (const size_t i : {size_t{2}, size_t{3}}) {
+    for (size_t i = kFirstReceived; i < kFloods.size(); ++i) {
+      // native-fdm knows no sender: what a stranger says well is as good as the host's, unless ?allow= keeps him out.
+      const bool isFollowing = protocol != HostProtocol::nativeFdm || kFloods[i] != FloodKind::strangersState;
       const double cost = frame[i].p99 / frame[0].p99, own = frame[i].p99 / frame[1].p99;
       add(name, fmt::format("{}: p99 against none", kFloodNames[i]), cost, "ratio");
       add(name, fmt::format("{}: p99 against one that nobody reads", kFloodNames[i]), own, "ratio");
@@ -154,9 +166,10 @@ class HostSuite {
           {fmt::format("{}: p99 of frames under a {} of {:.0f} a second, against none (below {:.2f})", name,
                        kFloodNames[i], kFloodHz, kMostFloodCost),
            fmt::format(
-               "{:.2f}; against the same flood unread {:.2f}; {:.1f} % of the frames follow, memory {:+.1f} MiB", cost,
-               own, 100 * all[i].followedShare, all[i].grownMiB),
-           cost < kMostFloodCost && all[i].followedShare > 0.99});
+               "{:.2f}; against the same flood unread {:.2f}; {:.1f} % of the frames follow, memory {:+.1f} MiB, the "
+               "receiving thread {:.2f} of a core",
+               cost, own, 100 * all[i].followedShare, all[i].grownMiB, all[i].linkShare),
+           cost < kMostFloodCost && (!isFollowing || all[i].followedShare > 0.99)});
     }
     return {};
   }
@@ -192,20 +205,23 @@ class HostSuite {
     begin("CIGI: a thousand heights and lines of sight");
     const Geodetic place = start();
     const std::string name = "CIGI";
-    const auto probe = openTerrainProbe(options_.terrain.empty() ? defaultTerrainPath() : options_.terrain);
-    if (!probe) return tl::unexpected(probe.error());
-    const AnswerTimes heights = timeAnswers(heightsRound(place), **probe),
-                      sights = timeAnswers(sightsRound(place), **probe);
-    add(name, "a thousand heights, thread's time", heights.allMs, "ms");
-    add(name, "a thousand lines of sight, thread's time", sights.allMs, "ms");
-    add(name, "the longest of these", std::max(heights.longestMs, sights.longestMs), "ms");
-    report_.targets.push_back(
-        {fmt::format("The longest answer of a thousand heights and a thousand lines of sight, thread's time (at most "
-                     "{:g} ms)",
-                     kMostAnswersMs),
-         fmt::format("heights {:.3f} ms, sights {:.3f} ms; all {:.1f} and {:.1f} ms", heights.longestMs,
-                     sights.longestMs, heights.allMs, sights.allMs),
-         std::max(heights.longestMs, sights.longestMs) <= kMostAnswersMs});
+    const std::string terrain = options_.terrain.empty() ? defaultTerrainPath() : options_.terrain;
+    const auto time = [&](const std::string& what, const std::vector<cigi::GroundQuestion>& asked) -> Result<void> {
+      const auto times = timeAnswers(asked, [&terrain] { return openTerrainProbe(terrain); });
+      if (!times) return tl::unexpected(times.error());
+      add(name, fmt::format("a thousand {}, warm, thread's time", what), times->warmMs, "ms");
+      add(name, fmt::format("a thousand {}, cold, thread's time", what), times->coldMs, "ms");
+      report_.targets.push_back(
+          {fmt::format("A thousand {}, warm, thread's time (at most {:g} ms)", what, kMostAnswersMs),
+           fmt::format("{:.2f} ms; cold, with reading and decoding, {:.1f} ms", times->warmMs, times->coldMs),
+           times->warmMs <= kMostAnswersMs});
+      return {};
+    };
+    if (const auto done = time("heights", heightsRound(place)); !done) return done;
+    for (const double lengthM : kSightLengthsM)
+      if (const auto done = time(fmt::format("lines of sight of {:g} km", lengthM / 1000), sightsRound(place, lengthM));
+          !done)
+        return done;
 
     begin("CIGI: a thousand heights with each frame");
     auto show = showOf(HostProtocol::cigi33);

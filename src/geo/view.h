@@ -8,7 +8,8 @@
 
 namespace eye {
 
-// Tangents of the signed half-angles: left and bottom are negative in a symmetric frustum. Pixels are square.
+// Tangents of the signed half-angles: left and bottom are negative in a symmetric frustum. Pixels are square. In a view
+// as in a mirror left is the greater one, upside down bottom is.
 struct Frustum {
   double tanLeft = -1, tanRight = 1, tanBottom = -0.75, tanTop = 0.75;
   double nearM = 1;  // depth = nearM / z (reversed-Z, infinite far plane); the precision does not depend on it

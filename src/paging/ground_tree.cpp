@@ -10,8 +10,18 @@ constexpr size_t kSurfacesBudgetBytes = 32 << 20;
 constexpr size_t kMostNodes = 16'384;  // some 5 MiB; a question adds a few thousand at most
 constexpr double kBoxSlackM = 0.01;    // for a box without a height
 
+// As TileKey::containing: cells own their south and west edges, and the pole's cells the pole. Across an edge levels
+// may differ, so it must not depend on what was asked before.
 bool holds(const TileBounds& bounds, double latDeg, double lonDeg) {
-  return latDeg >= bounds.southDeg && latDeg <= bounds.northDeg && lonDeg >= bounds.westDeg && lonDeg <= bounds.eastDeg;
+  return latDeg >= bounds.southDeg && (latDeg < bounds.northDeg || bounds.northDeg == 90) && lonDeg >= bounds.westDeg &&
+         lonDeg < bounds.eastDeg;
+}
+
+// A chunk's bounds are those of its own mesh. What is finer reaches beyond them: up and down by both meshes' errors, of
+// which the coarser one's is the greater; sideways where edges are chords of the cell's, by the square of their length.
+double reachBeyondM(const ChunkMeta& meta) {
+  constexpr double kSideways = 4;  // of a chord's height on the Earth; the parallels' edges bend more, up to 80 degrees
+  return 2 * meta.geometricErrorM + kSideways * meta.sphereRadiusM * meta.sphereRadiusM / kMeanEarthRadiusM;
 }
 
 }  // namespace
@@ -23,15 +33,17 @@ Result<void> GroundTree::add(const TileKey& key) {
   node.key = key;
   node.bounds = key.bounds();
   node.sphereCentreEcefM = meta->sphereCentreEcefM;
-  node.sphereRadiusM = meta->sphereRadiusM;
+  node.isLeaf = meta->childCount == 0;
+  const double reachM = kBoxSlackM + (node.isLeaf ? 0 : reachBeyondM(*meta));
+  node.sphereRadiusM =
+      meta->sphereRadiusM + 2 * reachM;  // more than the root of three, of a corner moved along each axis
   node.boxCentreEcefM = meta->box.centreEcefM;
   for (size_t axis = 0; axis < 3; ++axis) {
     const Vec3d& half = meta->box.halfAxesEcefM[axis];
     const double lengthM = glm::length(half);
     if (lengthM > 0) node.boxAxes[axis] = half / lengthM;  // an axis of 0 parts nothing
-    node.boxExtentsM[axis] = lengthM + kBoxSlackM;
+    node.boxExtentsM[axis] = lengthM + reachM;
   }
-  node.isLeaf = meta->childCount == 0;
   nodes_.push_back(std::move(node));
   return {};
 }
@@ -86,7 +98,8 @@ Result<const SurfaceGrid*> GroundTree::surfaceOf(NodeNumber number) {
 }
 
 Result<GroundTree::NodeNumber> GroundTree::leafAt(double latDeg, double lonDeg) {
-  const double lat = std::clamp(latDeg, -90.0, 90.0), lon = std::remainder(lonDeg, 360.0);
+  const double lat = std::clamp(latDeg, -90.0, 90.0), turned = std::remainder(lonDeg, 360.0);
+  const double lon = turned >= 180 ? -180 : turned;
   if (nodes_[lastLeaf_].isLeaf && holds(nodes_[lastLeaf_].bounds, lat, lon)) return lastLeaf_;
   // Cells split exactly, so one of the children holds it; on a common edge either does.
   const auto within = [&](NodeNumber first, uint32_t count) {
