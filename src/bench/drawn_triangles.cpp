@@ -64,6 +64,12 @@ Result<std::shared_ptr<const LoadedChunk>> ChunkShelf::chunk(const TileKey& key)
   return chunks_.emplace(key, std::make_shared<const LoadedChunk>(std::move(*loaded))).first->second;
 }
 
+std::vector<uint32_t> fatesInPool(const CullReadBack& culling) {
+  std::vector<uint32_t> fates(culling.clusters.size());
+  for (size_t i = 0; i < culling.candidates.size(); ++i) fates[culling.candidates[i].cluster] = culling.fates[i];
+  return fates;
+}
+
 bool isOffScreen(const FrustumPlanes& planes, const std::array<Vec3d, 3>& corners) {
   for (size_t i = 0; i < planes.normalsEcef.size(); ++i) {
     const auto isBehind = [&](const Vec3d& corner) {
@@ -77,17 +83,15 @@ bool isOffScreen(const FrustumPlanes& planes, const std::array<Vec3d, 3>& corner
 Result<DrawnTriangles> drawnTriangles(ImageGenerator& generator, ChunkShelf& shelf) {
   const FrameInput input = generator.lastInput();
   std::vector<uint32_t> clusterFates;
-  if (input.depthMapPx) clusterFates = generator.renderer().readCulling().fates;
+  if (input.depthMapPx) clusterFates = fatesInPool(generator.renderer().readCulling());
   DrawnTriangles drawn;
-  size_t candidate = 0;  // every cluster of the draws, in the draws' order
   for (size_t i = 0; i < input.draws.size(); ++i) {
     const ChunkDraw& draw = input.draws[i];
     auto chunk = shelf.chunk(generator.terrain().node(generator.selection().draws[i].node).meta.key);
     if (!chunk) return tl::unexpected(chunk.error());
     const size_t clusters = (*chunk)->mesh.clusters.size();
     std::span<const uint32_t> own;
-    if (!clusterFates.empty()) own = std::span(clusterFates).subspan(candidate, clusters);
-    candidate += clusters;
+    if (!clusterFates.empty()) own = std::span(clusterFates).subspan(draw.gpu.clusterOffset, clusters);
     drawn.runs.push_back({.draw = i, .skirtSide = -1, .firstIndex = 0, .fates = surfaceFates(**chunk, own)});
     for (int side = 0; side < 4; ++side) {
       const SkirtRange& skirt = draw.skirts[static_cast<size_t>(side)];
@@ -99,7 +103,6 @@ Result<DrawnTriangles> drawnTriangles(ImageGenerator& generator, ChunkShelf& she
     }
     drawn.chunks.push_back(std::move(*chunk));
   }
-  EYE_CHECK(clusterFates.empty() || candidate == clusterFates.size());
 
   const FrustumPlanes planes = frustumPlanes(input.view);
   TriangleIds ids(input.view);

@@ -63,6 +63,10 @@ class ChunkShelf {
 // Of the generator's last frame. A pixel shows the triangle that is nearest at its centre.
 Result<DrawnTriangles> drawnTriangles(ImageGenerator& generator, ChunkShelf& shelf);
 
+// What the last frame's culling made of each cluster, by its place in the renderer's pool (GpuChunk::clusterOffset and
+// on): the renderer takes draws in an order of its own.
+std::vector<uint32_t> fatesInPool(const CullReadBack& culling);
+
 // Behind one plane of the frustum with all corners, which are relative to the eye.
 bool isOffScreen(const FrustumPlanes& planes, const std::array<Vec3d, 3>& corners);
 

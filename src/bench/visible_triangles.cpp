@@ -1,5 +1,6 @@
 #include "bench/visible_triangles.h"
 
+#include "bench/drawn_triangles.h"
 #include "bench/triangle_ids.h"
 
 namespace eye {
@@ -32,20 +33,20 @@ Result<const VisibleTriangles::Chunk*> VisibleTriangles::chunkOf(const TileKey& 
 
 Result<size_t> VisibleTriangles::count(ImageGenerator& generator, bool isCulled) {
   std::vector<uint32_t> fates;
-  if (isCulled) fates = generator.renderer().readCulling().fates;
+  if (isCulled) fates = fatesInPool(generator.renderer().readCulling());
   TriangleIds ids(generator.view());
   uint32_t id = 0;
-  size_t candidate = 0;  // every cluster of the draws, in the draws' order
   for (const DrawnChunk& drawn : generator.selection().draws) {
-    const Result<const Chunk*> chunk = chunkOf(generator.terrain().node(drawn.node).meta.key);
+    const CacheNode& node = generator.terrain().node(drawn.node);
+    const Result<const Chunk*> chunk = chunkOf(node.meta.key);
     if (!chunk) return tl::unexpected(chunk.error());
+    size_t inPool = node.gpu.clusterOffset;
     for (const ChunkCluster& cluster : (*chunk)->mesh.clusters) {
-      const bool isDrawn = !isCulled || (fates[candidate] & (EYE_FATE_EARLY | EYE_FATE_LATE)) != 0;
-      ++candidate;
+      const bool isDrawn = !isCulled || (fates[inPool] & (EYE_FATE_EARLY | EYE_FATE_LATE)) != 0;
+      ++inPool;
       if (isDrawn) drawRun((*chunk)->mesh, (*chunk)->meta, generator.view(), cluster, ids, id);
     }
   }
-  EYE_CHECK(!isCulled || candidate == fates.size());
   return ids.visible();
 }
 

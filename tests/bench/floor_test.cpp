@@ -32,10 +32,10 @@ std::optional<SteeredGenerator> generatorOf(CullingMode culling, glm::ivec2 size
   return std::move(*made);
 }
 
-BenchView lowView(const DatabaseReader& reader) {
+BenchView wideView(const DatabaseReader& reader) {
   const auto places = findPlaces(reader);
   REQUIRE(places);
-  return benchViews(*places)[2];
+  return benchViews(*places)[4];
 }
 
 // 1/z along the ray, 0 where it misses the triangle or meets its back (Moeller and Trumbore 1997).
@@ -56,7 +56,7 @@ TEST_CASE("the floor's triangles are those that a ray through some pixel's centr
   for (const CullingMode culling : {CullingMode::frustum, CullingMode::dynamic}) {
     auto generator = generatorOf(culling, {kWidth, kHeight});
     if (!generator) return;
-    const BenchView view = lowView(*reader);
+    const BenchView view = wideView(*reader);
     for (int i = 0; i < 3; ++i) REQUIRE(generator->frame(view.pose));
     ChunkShelf shelf(*reader);
     const Result<DrawnTriangles> drawn = drawnTriangles(generator->generator(), shelf);
@@ -89,7 +89,7 @@ TEST_CASE("the floor's triangles are those that a ray through some pixel's centr
       if (nearest[i] > 0) met.insert(shown[i]);
       terrainPx += nearest[i] > 0;
     }
-    CHECK(met.size() > 50);
+    CHECK(met.size() > 20);
     CHECK((marked == met));
     CHECK(drawn->terrainPx == terrainPx);
     CHECK(drawn->count(TriangleFate::offScreen) > 0);
@@ -104,7 +104,7 @@ TEST_CASE("the floor's replay shows the frame, and each of its steps more triang
   if (!generator) return;
   ChunkShelf shelf(*reader);
   const uint64_t before = generator->generator().renderer().bytesResident();
-  const Result<FloorView> floor = measureFloor(*generator, lowView(*reader), shelf, {.frames = 4, .settle = 3});
+  const Result<FloorView> floor = measureFloor(*generator, wideView(*reader), shelf, {.frames = 4, .settle = 3});
   REQUIRE(floor);
   CHECK(floor->visible > 0);
   CHECK(floor->visible < floor->covering);
@@ -119,7 +119,7 @@ TEST_CASE("the floor's replay shows the frame, and each of its steps more triang
   CHECK(floorRatio({*floor}) == Approx(floor->cpuMs.frame / floor->cpuMs.visible));
   // What was uploaded for it is given back.
   const uint64_t after = generator->generator().renderer().bytesResident();
-  REQUIRE(generator->frame(lowView(*reader).pose));
+  REQUIRE(generator->frame(wideView(*reader).pose));
   CHECK(generator->generator().renderer().bytesResident() == after);
   CHECK(after >= before);
 }
