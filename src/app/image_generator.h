@@ -84,7 +84,7 @@ class ImageGenerator {
   std::unique_ptr<Renderer> renderer_;
   std::unique_ptr<Pager> pager_;  // after the renderer: it gives its chunks back to it
   DepthMapControl depthMap_;
-  Overlay overlay_;
+  StatisticsOverlay overlay_;
   int settledFrames_ = 0;  // drawn behind one another with nothing missing
 
   uint64_t number_ = 0;

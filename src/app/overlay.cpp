@@ -17,14 +17,14 @@ void line(const char* name, const char* format, double a, double b = 0, double c
 
 }  // namespace
 
-void Overlay::add(const FrameRecord& record) {
+void StatisticsOverlay::add(const FrameRecord& record) {
   last_ = record;
   if (!record.drawn) return;
   frameMs_[static_cast<size_t>(next_)] = static_cast<float>(record.frameMs);
   next_ = (next_ + 1) % kHistory;
 }
 
-void Overlay::draw(const std::string& device, const std::string& source) const {
+void StatisticsOverlay::draw(const std::string& device, const std::string& source) const {
   const FrameRecord& r = last_;
   ImGui::SetNextWindowPos(ImVec2(8, 8), ImGuiCond_Always);
   ImGui::SetNextWindowBgAlpha(0.72f);

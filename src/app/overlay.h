@@ -8,7 +8,7 @@
 
 namespace eye {
 
-class Overlay {
+class StatisticsOverlay {
  public:
   void add(const FrameRecord& record);
   // Dear ImGui calls for one frame, between NewFrame and Render.

@@ -27,7 +27,7 @@ th:first-child, td:first-child { text-align: left; }
 th { font-weight: 600; color: var(--soft); } th.group { text-align: center; border-left: 1px solid var(--line); }
 ul.targets { list-style: none; padding: 0; } ul.targets li::before { display: inline-block; width: 1.4em; }
 li.reached::before { content: "\2713"; color: var(--good); } li.missed::before { content: "\2717"; color: var(--bad); }
-svg { max-width: 100%; height: auto; display: block; } svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
+svg { width: 100%; height: auto; display: block; } svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
 svg .axis { stroke: var(--line); } svg .legend { fill: var(--ink); }
 li { margin: .25rem 0; } a { color: var(--link); } section { scroll-margin-top: 1rem; }
 th.theirs, td.theirs, tr.theirs td { background: var(--theirs); color: var(--soft); font-style: italic; }

@@ -83,8 +83,10 @@ Subcommands declareSubcommands(CLI::App& app, Arguments& args) {
   CLI::App* plots = app.add_subcommand(
       "plots", "Every plot of a report as a picture of its own, DIR/SUITE-N.svg, its numbers beside it");
   plots->add_option("REPORT", args.report, "The report.json of a run")->required();
+  plots->add_option("--out", args.out, "Folder for the pictures; made where it is missing")
+      ->type_name("DIR")
+      ->required();
   app.require_subcommand(0, 1);
-  app.fallthrough();  // --out and --log-level stand behind a subcommand too
   return {compare, plots};
 }
 
