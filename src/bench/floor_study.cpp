@@ -1,7 +1,5 @@
 #include "bench/floor_study.h"
 
-#include <time.h>
-
 #include <cmath>
 #include <limits>
 
@@ -9,6 +7,7 @@
 
 #include "app/statistics.h"
 #include "bench/triangle_replay.h"
+#include "telemetry/cpu_time.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -16,12 +15,6 @@ namespace {
 
 constexpr double kTriangleNs = 42 + 26, kPixelNs = 6.2, kClearNs = 0.38;
 const glm::vec3 kFlat{0.5f, 0.6f, 0.7f};
-
-double processCpuMs() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
-}
 
 // One of the pictures drawn in turn.
 struct Step {

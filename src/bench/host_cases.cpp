@@ -1,7 +1,5 @@
 #include "bench/host_cases.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,6 +13,7 @@
 #include "link/cigi_host.h"
 #include "link/flight_plan.h"
 #include "link/host_lock.h"
+#include "telemetry/cpu_time.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -31,12 +30,6 @@ double residentMiB() {
   uint64_t size = 0, resident = 0;
   statm >> size >> resident;
   return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
-}
-
-double threadCpuMs() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
 }
 
 // Until the host of the case before counts as gone: CIGI hears one host at a time.

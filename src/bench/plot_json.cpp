@@ -37,20 +37,25 @@ ReportPlot plotOf(const Json& json) {
   json.at("y_label").get_to(plot.yLabel);
   json.at("categories").get_to(plot.categories);
   json.at("logarithmic").get_to(plot.isLogarithmic);
+  json.at("logarithmic_x").get_to(plot.isLogarithmicX);
+  json.at("from_zero").get_to(plot.isFromZero);
   for (const Json& series : json.at("series"))
     plot.series.push_back({.name = series.at("name").get<std::string>(),
                            .x = valuesOf(series.at("x")),
                            .y = valuesOf(series.at("y")),
-                           .areDots = series.at("dots").get<bool>()});
+                           .areDots = series.at("dots").get<bool>(),
+                           .dotPx = series.at("dot_px").get<double>(),
+                           .labels = series.at("labels").get<std::vector<std::string>>()});
   return plot;
 }
 
 // A cell of CSV: quoted where it has to be.
 std::string cell(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
+  std::string quoted(1, '"');
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  quoted.push_back('"');
+  return quoted;
 }
 
 std::string number(double value) {
@@ -77,11 +82,11 @@ std::string plotCsv(const ReportPlot& plot) {
     return csv;
   }
   csv = cell(plot.xLabel);
-  for (const Series& series : plot.series) csv += "," + cell(series.name);
+  for (const Series& series : plot.series) csv += fmt::format(",{}", cell(series.name));
   csv += "\n";
   for (size_t i = 0; i < plot.categories.size(); ++i) {
     csv += cell(plot.categories[i]);
-    for (const Series& series : plot.series) csv += "," + (i < series.y.size() ? number(series.y[i]) : "");
+    for (const Series& series : plot.series) csv += fmt::format(",{}", i < series.y.size() ? number(series.y[i]) : "");
     csv += "\n";
   }
   return csv;
@@ -92,12 +97,19 @@ nlohmann::ordered_json plotsJson(const std::vector<ReportPlot>& plots) {
   for (const ReportPlot& plot : plots) {
     Json series = Json::array();
     for (const Series& one : plot.series)
-      series.push_back({{"name", one.name}, {"dots", one.areDots}, {"x", valuesJson(one.x)}, {"y", valuesJson(one.y)}});
+      series.push_back({{"name", one.name},
+                        {"dots", one.areDots},
+                        {"dot_px", one.dotPx},
+                        {"labels", one.labels},
+                        {"x", valuesJson(one.x)},
+                        {"y", valuesJson(one.y)}});
     json.push_back({{"title", plot.title},
                     {"x_label", plot.xLabel},
                     {"y_label", plot.yLabel},
                     {"categories", plot.categories},
                     {"logarithmic", plot.isLogarithmic},
+                    {"logarithmic_x", plot.isLogarithmicX},
+                    {"from_zero", plot.isFromZero},
                     {"series", series}});
   }
   return json;
