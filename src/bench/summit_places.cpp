@@ -80,7 +80,7 @@ Result<size_t> summitsOver(GroundQuery& ground, const Geodetic& eye, const std::
     if (!top) return tl::unexpected(top.error());
     const Result<bool> inSight = isInSight(ground, eye, *top, bend, kShownRad);
     if (!inSight) return tl::unexpected(inSight.error());
-    seen += *inSight ? 1 : 0;
+    seen += *inSight ? size_t{1} : size_t{0};
   }
   return seen;
 }

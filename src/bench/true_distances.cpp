@@ -8,7 +8,7 @@
 #include "bake/elevation_mosaic.h"
 #include "bench/drawn_triangles.h"
 #include "bench/triangle_ids.h"
-#include "paging/lod_select.h"
+#include "terrain/extent.h"
 
 namespace eye {
 namespace {
