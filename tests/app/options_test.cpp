@@ -221,7 +221,8 @@ TEST_CASE("the configuration file's values have the types of their options") {
 }
 
 TEST_CASE("every documented key of the example configuration is known") {
-  const ParsedOptions parsed = parse({"--config", eye::test::kSourceDir + "/config/eyepoint.toml"});
+  const std::string path = eye::test::kSourceDir + "/config/eyepoint.toml";
+  const ParsedOptions parsed = parse({"--config", path.c_str()});
   INFO(parsed.text);
   CHECK_FALSE(parsed.exitStatus);
 }

@@ -166,7 +166,7 @@ TEST_CASE("Gazetteer: broken files of every format end in an error or in summits
         text = fmt::format("{}{}{}", head, chance() % 2 == 0 ? piece : std::string_view(&noise, 1), tail);
         if (text.empty()) text.assign(1, 'x');
       }
-      const auto summits = read(text);
+      const auto summits = eye::read(text);
       ++(summits ? read : refused);
       if (!summits) continue;
       for (const Summit& s : *summits) {

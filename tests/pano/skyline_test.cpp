@@ -2,6 +2,7 @@
 // azimuth, over GeographicLib's ellipsoid, with refraction and without.
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <thread>
 
 #include <fmt/format.h>
@@ -29,7 +30,7 @@ double islandM(double latDeg, double lonDeg) {
   const double n = s * 66700, e = t * 63700;
   const double hills = 250 + 220 * std::sin(n / 2300) * std::cos(e / 2900) + 45 * std::sin(n / 640) * std::sin(e / 560);
   const double ridges = 900 * std::pow(0.5 + 0.5 * std::sin(n / 5200 + e / 8100), 2.0);
-  const double fromShore = std::sin(s * kPi) * std::sin(t * kPi);
+  const double fromShore = std::sin(s * std::numbers::pi) * std::sin(t * std::numbers::pi);
   return std::max(0.0, (hills + ridges) * std::min(1.0, 2.2 * (fromShore - 0.03)));
 }
 
