@@ -14,16 +14,18 @@ TEST_CASE("The speed reference measures the same machine as the same machine") {
   }
   Result<SpeedReference> reference = SpeedReference::create("");
   REQUIRE(reference);
-  const Result<MachineSpeed> first = reference->measure(), second = reference->measure();
-  REQUIRE((first && second));
-  CHECK(first->loopMs > 1);
-  CHECK(first->loopMs < 2 * second->loopMs);
-  CHECK(second->loopMs < 2 * first->loopMs);
-  if (!first->drawMs) return;  // a GPU
-  CHECK(*first->drawMs > 0.2);
-  CHECK(*first->drawMs < 2 * *second->drawMs);
-  CHECK(*second->drawMs < 2 * *first->drawMs);
-  CHECK(meanOf(*first, *second).referenceMs() == Approx(first->referenceMs()).epsilon(1));
+  // The machine may have other work during one of two measurements, hardly during all.
+  constexpr int kTries = 3;
+  const auto isAlike = [](double a, double b) { return a < 2 * b && b < 2 * a; };
+  bool areAlike = false;
+  for (int i = 0; i < kTries && !areAlike; ++i) {
+    const Result<MachineSpeed> first = reference->measure(), second = reference->measure();
+    REQUIRE((first && second));
+    CHECK(first->loopMs > 1);
+    CHECK(first->drawMs.value_or(1) > 0.2);  // of a GPU nothing is measured
+    areAlike = isAlike(first->loopMs, second->loopMs) && isAlike(first->drawMs.value_or(1), second->drawMs.value_or(1));
+  }
+  CHECK(areAlike);
 }
 
 TEST_CASE("Both parts of the speed reference count, or the one that there is") {

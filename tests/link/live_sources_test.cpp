@@ -25,7 +25,7 @@ double metresBetween(const Pose& a, const Pose& b) {
 
 TEST_CASE("URLs of live hosts: options that are wrong are said so") {
   const std::pair<const char*, const char*> bad[] = {
-      {"cigi://:8000?views=1", "there are: reply, view, database, allow"},
+      {"cigi://:8000?views=1", "there are: reply, answers, view, database, allow"},
       {"cigi://:8000?view", "view=VALUE"},
       {"cigi://:8000?view=", "view=VALUE"},
       {"cigi://:8000?view=1&view=2", "twice"},

@@ -120,7 +120,9 @@ TEST_CASE("Peaks: one close behind a ridge is not visible, one over it is and ha
       CHECK(peak.trueM == Approx(straightM(kEye, peak.summit)).epsilon(1e-9));
       if (!isVisible) continue;
       const double turnRad = radFromDeg(std::fmod(peak.azimuthDeg, 45.0) - 22.5);
-      const double toldM = depth == DepthKind::range ? peak.trueM : peak.trueM * std::cos(turnRad);
+      // The paper's depth is along the view's axis, which is level and in the middle of its 45 degrees.
+      const double alongAxis = std::cos(turnRad) * std::cos(radFromDeg(peak.elevationDeg));
+      const double toldM = depth == DepthKind::range ? peak.trueM : peak.trueM * alongAxis;
       CHECK(peak.measuredM == Approx(toldM).epsilon(0.01));
       CHECK(peak.groundM == Approx(peak.trueM).epsilon(0.01));
     }
