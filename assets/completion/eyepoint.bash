@@ -13,7 +13,7 @@ _eyepoint() {
     words=$(sed -E 's/.*\{(.*)\}.*/\1/; s/:.*//' <<<"${line##* }" | tr '/,' '\n' | grep -E '^[a-z][a-z-]*$')
     [ -n "$words" ] && mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
   elif [[ $current == -* ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$(grep -oE -- '(^|[ ,])--[a-z][a-z-]+' <<<"$help" | tr -d ' ,')" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "$(grep -oE -- '(^|[ ,])--[a-z][a-z-]+' <<<"$help" | tr -d ' ,' | sort -u)" -- "$current")
   elif [[ $COMP_CWORD -eq 1 ]]; then
     words=$(sed -n '/^\(Subcommands\|Suites\):/,/^[^ ]*$/s/^  \([a-z][a-z-]*\) .*/\1/p' <<<"$help")
     [ -n "$words" ] && mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")

@@ -15,8 +15,9 @@ namespace eye {
 namespace {
 
 constexpr double kShowS = 20, kQuickShowS = 3;
-constexpr double kFloodS = 60, kQuickFloodS = 10;
-constexpr int kFloodRounds = 3;  // parts of these seconds: each kind in turn, so that a busy minute slows all of them
+constexpr double kFloodS = 60, kQuickFloodS = 3;
+// Parts of these seconds: each kind in turn, so that a busy minute slows all of them. A quick run has no such minutes.
+constexpr int kFloodRounds = 3;
 constexpr double kTrackS = 30, kQuickTrackS = 3;
 constexpr double kAboveGroundM = 600;
 constexpr double kMostWaitMs = 1000 / kHostRateHz, kMostFloodCost = 1.10, kMostAnswersMs = 1;
@@ -34,6 +35,10 @@ constexpr const char* kFloodNames[] = {"no flood",
 constexpr size_t kFirstReceived = 2;  // of these
 constexpr std::array kSightLengthsM{1000.0, 10'000.0, 50'000.0};
 
+int roundsOf(const SuiteOptions& options) {
+  return options.quick ? 1 : kFloodRounds;
+}
+
 class HostSuite {
  public:
   HostSuite(const SuiteOptions& options, const Place& mountains) : options_(options), place_(mountains.spots[0]) {
@@ -44,7 +49,7 @@ class HostSuite {
         "machine. "
         "What sending costs is measured too: a flood comes from the same cores.";
     report_.tables.push_back({.caption = "Figures", .columns = {"case", "protocol", "value", "unit"}});
-    const int floods = static_cast<int>(kFloods.size()) * kFloodRounds;
+    const int floods = static_cast<int>(kFloods.size()) * roundsOf(options);
     steps_ = options.quick ? 3 + floods + 2 + 2 : 3 + 2 * floods + 4 + 2;
   }
 
@@ -128,7 +133,7 @@ class HostSuite {
     if (!show) return tl::unexpected(show.error());
     const NumberedPoses poses(start());
     std::array<FloodFigures, kFloods.size()> all{};
-    constexpr int rounds = kFloodRounds;
+    const int rounds = roundsOf(options_);
     for (int round = 0; round < rounds; ++round) {
       for (size_t i = 0; i < kFloods.size(); ++i) {
         begin(fmt::format("{}: {}", name, kFloodNames[i]));
@@ -157,8 +162,6 @@ class HostSuite {
       add(name, what + ": receiving thread", all[i].linkShare, "of a core");
     }
     for (size_t i = kFirstReceived; i < kFloods.size(); ++i) {
-      // native-fdm knows no sender: what a stranger says well is as good as the host's, unless ?allow= keeps him out.
-      const bool isFollowing = protocol != HostProtocol::nativeFdm || kFloods[i] != FloodKind::strangersState;
       const double cost = frame[i].p99 / frame[0].p99, own = frame[i].p99 / frame[1].p99;
       add(name, fmt::format("{}: p99 against none", kFloodNames[i]), cost, "ratio");
       add(name, fmt::format("{}: p99 against one that nobody reads", kFloodNames[i]), own, "ratio");
@@ -169,7 +172,7 @@ class HostSuite {
                "{:.2f}; against the same flood unread {:.2f}; {:.1f} % of the frames follow, memory {:+.1f} MiB, the "
                "receiving thread {:.2f} of a core",
                cost, own, 100 * all[i].followedShare, all[i].grownMiB, all[i].linkShare),
-           cost < kMostFloodCost && (!isFollowing || all[i].followedShare > 0.99)});
+           cost < kMostFloodCost && all[i].followedShare > 0.99});
     }
     return {};
   }
