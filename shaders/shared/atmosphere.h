@@ -50,10 +50,9 @@ float sunDisc(vec3 ray_eye, float rise) {
   return frame.glow.w * disc * (1.0 - 0.7 * (1.0 - exp(-frame.airDepth.r * skyColumn(rise))));
 }
 
-// Optical depth of the haze per metre of the straight way from the eye to a point of the ground, mean over the way.
-float hazePerMetre(vec3 position_ecef) {
-  float distanceM = max(length(position_ecef), 1e-3);
-  float rise = dot(position_ecef, frame.up_ecef.xyz) / distanceM;
+// Optical depth of the haze per metre of the straight way from the eye to a point so far away, mean over the way.
+// `rise` is the sine of the way's elevation.
+float hazePerMetre(float distanceM, float rise) {
   float eyeHeightM = frame.up_ecef.w;
   // The point's height, with the Earth's curvature.
   float lowM = eyeHeightM + distanceM * rise + distanceM * distanceM * (1.0 - rise * rise) * (0.5 / EYE_EARTH_RADIUS_M);
@@ -74,6 +73,12 @@ float hazePerMetre(vec3 position_ecef) {
   float density = exp(-pointM / EYE_AIR_SCALE_M);
   float mean = abs(between) < 0.02 ? 0.5 * (density + frame.sun_ecef.w) : (density - frame.sun_ecef.w) / between;
   return frame.sunLight.w * mean * inAirM / distanceM;
+}
+
+// To a point of the ground.
+float hazePerMetre(vec3 position_ecef) {
+  float distanceM = max(length(position_ecef), 1e-3);
+  return hazePerMetre(distanceM, dot(position_ecef, frame.up_ecef.xyz) / distanceM);
 }
 
 // Half a step of 8 bits, up or down, from a pattern without structure (Jimenez 2014): no bands in sky and haze.

@@ -9,6 +9,7 @@
 #include "app/draw_list.h"
 #include "app/terrain_probe.h"
 #include "geo/sun.h"
+#include "link/air.h"
 #include "telemetry/cpu_time.h"
 #include "telemetry/trace.h"
 
@@ -23,6 +24,18 @@ constexpr double kFrameBudgetMs = 1000.0 / 60;
 Pose waitingPose(const DatabaseInfo& info) {
   const TileBounds& b = info.dataBounds;
   return Pose{{(b.southDeg + b.northDeg) / 2, (b.westDeg + b.eastDeg) / 2, 4000.0}, 0, -5, 0};
+}
+
+// What --cloud-base means: within it one sees as far as in fog.
+Air airWithCloud(double baseM, double coverage, double visibilityM) {
+  constexpr double kThicknessM = 300, kTransitionM = 60, kVisibilityM = 150;
+  Air air;
+  air.visibilityM = visibilityM;
+  if (coverage <= 0) return air;
+  const double topM = baseM + kThicknessM;
+  air.layers[1] = {kVisibilityM, baseM, topM, kTransitionM, kTransitionM};
+  air.clouds[0] = {baseM, topM, kTransitionM, kTransitionM, coverage};
+  return air;
 }
 
 bool operator==(const View& a, const View& b) {
@@ -69,6 +82,7 @@ SourceSample Sources::sample(double timeS) {
     newest.hostFrame = spoken.hostFrame;
     newest.arrivedNs = spoken.arrivedNs;
     newest.visibilityM = visibilityM_;
+    newest.clouds = spoken.clouds;
   }
   visibilityM_ = newest.visibilityM;
   newest.counts = counts;
@@ -168,6 +182,12 @@ Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
   lighting.sunDirectionEcef = sunDirectionEcef(julianDay);
   lighting.siderealRad = siderealRad(julianDay);
   lighting.visibilityM = options_.visibilityM.value_or(host.visibilityM.value_or(kDefaultVisibilityM));
+  lighting.clouds = host.clouds;
+  if (options_.cloudBaseM) {
+    const Air air = airWithCloud(*options_.cloudBaseM, options_.cloudCover, lighting.visibilityM);
+    lighting.clouds = air.clouds;
+    lighting.visibilityM = visibilityAt(air, pose_.position.altM).value_or(lighting.visibilityM);
+  }
   return lighting;
 }
 
@@ -196,7 +216,7 @@ DrawnKey ImageGenerator::keyOf(const DrawnChunk& drawn) const {
 // What is loaded ahead does not show: only what the selection draws counts.
 bool ImageGenerator::sameAsLast(const Lighting& lighting) const {
   return drawn_ && drawn_->view == view_ && drawn_->lighting.sunDirectionEcef == lighting.sunDirectionEcef &&
-         drawn_->lighting.visibilityM == lighting.visibilityM &&
+         drawn_->lighting.visibilityM == lighting.visibilityM && drawn_->lighting.clouds == lighting.clouds &&
          std::equal(drawn_->chunks.begin(), drawn_->chunks.end(), selection_.draws.begin(), selection_.draws.end(),
                     [this](const DrawnKey& key, const DrawnChunk& drawn) { return key == keyOf(drawn); });
 }

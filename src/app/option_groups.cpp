@@ -195,6 +195,14 @@ void addQuality(CLI::App& app, Options& o) {
       ->type_name("M")
       ->check(within(10.0, 1.0e6))
       ->group(group);
+  app.add_option("--cloud-base", o.cloudBaseM, "A layer of cloud, 300 m thick, from this height; default the host's")
+      ->type_name("M")
+      ->check(within(-1000.0, 20000.0))
+      ->group(group);
+  app.add_option("--cloud-cover", o.cloudCover, "Its share of the sky, 0 to 1; default 1, an overcast")
+      ->type_name("SHARE")
+      ->check(within(0.0, 1.0))
+      ->group(group);
 }
 
 void addOutputs(CLI::App& app, Options& o) {

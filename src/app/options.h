@@ -70,6 +70,8 @@ struct Options {
   std::optional<double> timeOfDayH, utcH;
   std::optional<CalendarDate> date;  // unset: kDefaultDate
   std::optional<double> visibilityM;
+  std::optional<double> cloudBaseM;  // of one layer instead of the host's
+  double cloudCover = 1;             // its share of the sky
 
   // Outputs.
   std::string screenshot, distanceMap, record, stats, summary, trace;

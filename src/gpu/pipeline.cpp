@@ -41,8 +41,10 @@ vk::raii::Pipeline createPipeline(const GpuDevice& gpu, const vk::raii::Pipeline
   vk::PipelineColorBlendAttachmentState target;
   target.setColorWriteMask(vk::ColorComponentFlagBits::eR | vk::ColorComponentFlagBits::eG |
                            vk::ColorComponentFlagBits::eB | vk::ColorComponentFlagBits::eA);
-  target.setBlendEnable(spec.adds);
-  target.setSrcColorBlendFactor(vk::BlendFactor::eOne).setDstColorBlendFactor(vk::BlendFactor::eOne);
+  const bool covers = spec.blend == Blend::alpha;
+  target.setBlendEnable(spec.blend != Blend::none);
+  target.setSrcColorBlendFactor(covers ? vk::BlendFactor::eSrcAlpha : vk::BlendFactor::eOne);
+  target.setDstColorBlendFactor(covers ? vk::BlendFactor::eOneMinusSrcAlpha : vk::BlendFactor::eOne);
   target.setSrcAlphaBlendFactor(vk::BlendFactor::eZero).setDstAlphaBlendFactor(vk::BlendFactor::eOne);
   vk::PipelineColorBlendStateCreateInfo blend;
   const bool hasColour = spec.colourFormat != vk::Format::eUndefined;

@@ -13,6 +13,14 @@ enum class DepthUse {
   none,
   testAndWrite,  // nearer pixels win
   whereNothing,  // only where the cleared depth still stands; writes no depth
+  test,          // only before what stands there; writes no depth
+};
+
+// What becomes of the colour that is there.
+enum class Blend {
+  none,   // it is written over, alpha too
+  add,    // the new one is added; alpha stays
+  alpha,  // the new one covers it by its alpha; alpha stays
 };
 
 struct PipelineSpec {
@@ -26,7 +34,7 @@ struct PipelineSpec {
   DepthUse depth = DepthUse::none;
   std::vector<uint32_t> vertexConstants{};  // the vertex shader's specialization constants 0, 1, 2 ..., as bits
   bool isStrip = false;                     // triangle strips instead of single triangles
-  bool adds = false;                        // colours are added to what is there
+  Blend blend = Blend::none;
   vk::CullModeFlags cull = vk::CullModeFlagBits::eNone;
 };
 

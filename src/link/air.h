@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include "geo/cloud_layer.h"
+
 namespace eye {
 
 struct AirLayer {
@@ -16,6 +18,7 @@ struct AirLayer {
 struct Air {
   std::optional<double> visibilityM;
   std::array<AirLayer, 10> layers;
+  CloudLayers clouds;  // as they are seen from outside
 };
 
 // Meteorological visibility around an eye at this altitude; nothing where nothing is told. Within the limits of

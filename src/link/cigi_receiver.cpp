@@ -58,6 +58,7 @@ void Receiver::tell(const State& state, int64_t nowNs, SourceSample& sample) {
   sample.hostFrame = state.hostFrame;
   sample.edges = state.edges;
   sample.julianDayUtc = julianDayAt(state.sky, nowNs);
+  sample.clouds = state.air.clouds;
   if (sample.valid) sample.visibilityM = visibilityAt(state.air, sample.pose.position.altM);
 }
 

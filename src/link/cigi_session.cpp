@@ -188,9 +188,9 @@ void Session::take(const CelestialSphere& sphere, int64_t atNs) {
 void Session::take(const Weather& weather) {
   if (weather.scope != Scope::global || weather.layer >= air_.layers.size()) return;
   AirLayer layer;
+  // Fog, rain, snow, sand and dust reach down to the ground; clouds have a base.
+  const bool isCloud = weather.layer >= 1 && weather.layer <= 3;
   if (weather.enabled) {
-    // Fog, rain, snow, sand and dust reach down to the ground; clouds have a base.
-    const bool isCloud = weather.layer >= 1 && weather.layer <= 3;
     layer.visibilityM = weather.visibilityM;
     layer.bottomM = isCloud ? weather.baseM : -kMaxAltitudeM;
     layer.topM = weather.baseM + weather.thicknessM;
@@ -198,6 +198,11 @@ void Session::take(const Weather& weather) {
     layer.topTransitionM = weather.topTransitionM > 0 ? weather.topTransitionM : weather.transitionM;
   }
   air_.layers[weather.layer] = layer;
+  if (!isCloud) return;
+  CloudLayer& cloud = air_.clouds[weather.layer - 1u];
+  cloud = {};
+  if (weather.enabled)
+    cloud = {layer.bottomM, layer.topM, layer.bottomTransitionM, layer.topTransitionM, weather.coveragePercent / 100};
 }
 
 Snapshot Session::snapshot() const {

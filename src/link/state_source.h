@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "geo/cloud_layer.h"
 #include "link/ground_probe.h"
 #include "link/host_state.h"
 #include "link/view_edges.h"
@@ -17,6 +18,7 @@ struct SourceSample {
   Pose pose;
   HostCounts counts;
   std::optional<double> visibilityM;
+  CloudLayers clouds{};
   std::optional<double> julianDayUtc;  // that the host's sky shows
   ViewEdges edges;                     // what the host has said of the view
   std::optional<uint32_t> hostFrame;   // the host's number of the newest packet, where its protocol has one

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/cloud_faces.h"
 #include "render/sky_dome.h"
 
 namespace eye {
@@ -89,6 +90,9 @@ shader::FrameData frameData(const FrameInput& input) {
   frame.domeAhead_ecef = vec4(vec3(domeAhead(upEcef)), 0.0f);
   frame.sunLight.w = static_cast<float>(extinction);
   setLight(glm::dot(upEcef, sunEcef), density(eye.altM), kHazeShare * atGround * EYE_AIR_SCALE_M, frame);
+  // Under clouds the sun shines neither on the ground nor into the haze.
+  const float sunThrough = static_cast<float>(sunThroughClouds(input.lighting.clouds, eye.altM));
+  for (vec4* light : {&frame.sunLight, &frame.horizonGlow}) *light = vec4(vec3(*light) * sunThrough, light->w);
   return frame;
 }
 

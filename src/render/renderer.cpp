@@ -48,6 +48,7 @@ struct Renderer::Impl {
   void resizeTargets(int widthPx, int heightPx);
   bool prepareCulling(const FrameInput& input, size_t byVertex);
   void record(const FrameInput& input, const DrawCounts& counts, bool culls, std::optional<uint32_t> shown);
+  void drawAir(const FrameInput& input);
   void recordScene(const FrameInput& input, const DrawCounts& counts);
   void buildPyramidOnHost();
   void recordCulledScene(const FrameInput& input, const DrawCounts& counts);
@@ -197,6 +198,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
     impl.lists->reserve(*impl.gpu, input.draws.size());
     impl.scene->frame() = frameData(input);
     impl.scene->placeSky(input, impl.options.airByPixel);
+    impl.scene->placeClouds(input);
     impl.scene->faceAs(input.view.frustum);
     const size_t parted = partByHaze(asked.draws, asked.view.eyeEcefM, impl.scene->frame(), impl.draws);
     const size_t byVertex = impl.options.airByPixel ? 0 : parted;
@@ -261,6 +263,13 @@ bool Renderer::Impl::prepareCulling(const FrameInput& input, size_t byVertex) {
   return cullLists->candidateCount() > 0;
 }
 
+// Where no terrain is, and before it.
+void Renderer::Impl::drawAir(const FrameInput& input) {
+  if (input.background) return;
+  scene->drawSky(commands);
+  scene->drawClouds(commands);
+}
+
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
   scene->begin(commands, targets, ScenePass::Pass::whole, input.background);
   const uint32_t batch = overlap->batch(counts.draws());
@@ -274,7 +283,7 @@ void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& coun
   };
   draw(HazeBy::vertex, counts.byVertex);
   draw(HazeBy::pixel, counts.byPixel);
-  if (!input.background) scene->drawSky(commands);
+  drawAir(input);
   scene->end(commands);
   timestamps->mark(commands, "scene");
 }
@@ -325,7 +334,7 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
   if (!input.freezeCulling) drawClusters(cullLists->lateBuffer());
   draw(HazeBy::vertex, lists->commands(), counts.byVertex.firstSkirt(), counts.byVertex.skirts);
   draw(HazeBy::pixel, lists->commands(), counts.byPixel.firstSkirt(), counts.byPixel.skirts);
-  if (!input.background) scene->drawSky(commands);
+  drawAir(input);
   scene->end(commands);
   timestamps->mark(commands, "late");
 }

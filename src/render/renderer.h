@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "geo/cloud_layer.h"
 #include "geo/scene_bend.h"
 #include "geo/view.h"
 #include "gpu/device_description.h"
@@ -67,6 +68,7 @@ struct Lighting {
   Vec3d sunDirectionEcef{0, 0, 1};  // unit, towards the sun
   double visibilityM = 50000;  // meteorological: contrast falls to 5 % (Koschmieder: extinction = 2.996 / visibility)
   double siderealRad = 0;      // how far the Earth has turned under the stars
+  CloudLayers clouds{};        // seen from outside; within one the visibility is the caller's to set
 };
 
 struct FrameInput {

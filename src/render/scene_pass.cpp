@@ -5,6 +5,8 @@
 #include <bit>
 
 #include "gpu/pipeline.h"
+#include "spirv/cloud_frag.h"
+#include "spirv/cloud_vert.h"
 #include "spirv/sky_dome_frag.h"
 #include "spirv/sky_dome_vert.h"
 #include "spirv/sky_frag.h"
@@ -118,7 +120,7 @@ PipelineSpec sunSpec() {
   spec.vertexSpirv = k_sun_vert;
   spec.fragmentSpirv = k_sun_frag;
   spec.depth = DepthUse::whereNothing;
-  spec.adds = true;
+  spec.blend = Blend::add;
   return spec;
 }
 
@@ -130,7 +132,16 @@ PipelineSpec starSpec() {
   spec.attributes = {{0, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(StarInstance, ndc)},
                      {1, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(StarInstance, direction_eye)}};
   spec.depth = DepthUse::whereNothing;
-  spec.adds = true;
+  spec.blend = Blend::add;
+  return spec;
+}
+
+PipelineSpec cloudSpec() {
+  PipelineSpec spec;
+  spec.vertexSpirv = k_cloud_vert;
+  spec.fragmentSpirv = k_cloud_frag;
+  spec.depth = DepthUse::test;
+  spec.blend = Blend::alpha;
   return spec;
 }
 
@@ -155,8 +166,10 @@ ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
       gpu.device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes));
   set_ = std::move(vk::raii::DescriptorSets(gpu.device, vk::DescriptorSetAllocateInfo(*pool_, *setLayout_)).front());
   layout_ = vk::raii::PipelineLayout(gpu.device, vk::PipelineLayoutCreateInfo({}, *setLayout_));
+  const vk::PushConstantRange face(Stage::eFragment, 0, sizeof(shader::CloudFace));
+  cloudLayout_ = vk::raii::PipelineLayout(gpu.device, vk::PipelineLayoutCreateInfo({}, *setLayout_, face));
   const auto make = [&](PipelineSpec spec) {
-    spec.layout = *layout_;
+    if (!spec.layout) spec.layout = *layout_;
     spec.colourFormat = options.colourFormat;
     spec.depthFormat = kDepthFormat;
     spec.samples = options.samples;
@@ -177,6 +190,9 @@ ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
   domeSky_ = make(domeSpec());
   sun_ = make(sunSpec());
   star_ = make(starSpec());
+  PipelineSpec cloud = cloudSpec();
+  cloud.layout = *cloudLayout_;
+  cloud_ = make(std::move(cloud));
   const vk::DescriptorBufferInfo frame(*frame_.buffer, 0, VK_WHOLE_SIZE);
   gpu.device.updateDescriptorSets(vk::WriteDescriptorSet(*set_, EYE_BIND_FRAME, 0, Type::eUniformBuffer, {}, frame),
                                   nullptr);
@@ -297,6 +313,16 @@ void ScenePass::drawSky(const vk::raii::CommandBuffer& commands) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *star_);
   commands.bindVertexBuffers(0, *starBuffer_.buffer, {0});
   commands.draw(kSpotVertices, static_cast<uint32_t>(placedStars_.size()), 0, 0);
+}
+
+void ScenePass::drawClouds(const vk::raii::CommandBuffer& commands) const {
+  if (clouds_.empty()) return;
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *cloud_);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *cloudLayout_, 0, *set_, nullptr);
+  for (const shader::CloudFace& face : clouds_) {
+    commands.pushConstants<shader::CloudFace>(*cloudLayout_, Stage::eFragment, 0, face);
+    commands.draw(3, 1, 0, 0);
+  }
 }
 
 }  // namespace eye

@@ -3,6 +3,7 @@
 
 #include "geo/scene_bend.h"
 #include "render/chunk_pools.h"
+#include "render/cloud_faces.h"
 #include "render/draw_lists.h"
 #include "render/haze_width.h"
 #include "render/picture_quality.h"
@@ -36,6 +37,8 @@ class ScenePass {
   void faceAs(const Frustum& frustum) {
     flips_ = (frustum.tanLeft > frustum.tanRight) != (frustum.tanBottom > frustum.tanTop);
   }
+  // What drawClouds draws; after frame() has been set.
+  void placeClouds(const FrameInput& input) { clouds_ = cloudFaces(input, frame()); }
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
   // One render pass, the whole, or a first and one that goes on with what that has drawn, or draw it over: begin, draw,
@@ -55,6 +58,8 @@ class ScenePass {
                   const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t count) const;
   // With the stars, if any show.
   void drawSky(const vk::raii::CommandBuffer& commands) const;
+  // The layers of cloud before what is there, those behind first. Writes no depth.
+  void drawClouds(const vk::raii::CommandBuffer& commands) const;
   void end(const vk::raii::CommandBuffer& commands) const { commands.endRendering(); }
 
  private:
@@ -67,13 +72,14 @@ class ScenePass {
   GpuBuffer frame_, starBuffer_;
   std::vector<StarInstance> placedStars_;
   std::optional<DomePart> dome_;  // nothing: by pixel
+  std::vector<shader::CloudFace> clouds_;
   vk::raii::Sampler sampler_{nullptr};
   vk::raii::DescriptorSetLayout setLayout_{nullptr};
   vk::raii::DescriptorPool pool_{nullptr};
   vk::raii::DescriptorSet set_{nullptr};
-  vk::raii::PipelineLayout layout_{nullptr};
+  vk::raii::PipelineLayout layout_{nullptr}, cloudLayout_{nullptr};
   vk::raii::Pipeline terrain_{nullptr}, wide_{nullptr}, tinted_{nullptr}, sky_{nullptr}, domeSky_{nullptr},
-      sun_{nullptr}, star_{nullptr}, depthAtCentres_{nullptr};
+      sun_{nullptr}, star_{nullptr}, cloud_{nullptr}, depthAtCentres_{nullptr};
 };
 
 }  // namespace eye

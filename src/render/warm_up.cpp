@@ -34,6 +34,7 @@ Result<void> warmUp(Renderer& renderer, const RendererOptions& options) {
   draw.upEcef = {1, 0, 0};
   draw.textureLayer = static_cast<uint32_t>(gpu->textureLayer);
   FrameInput input;
+  input.lighting.clouds[0] = {.baseM = 12000, .topM = 13000, .coverage = 0.5};
   const Pose pose{{0, 0, 10000}, 0, -90, 0};
   input.view =
       makeView(pose, symmetricFrustum(60, options.widthPx, options.heightPx, 1), options.widthPx, options.heightPx);

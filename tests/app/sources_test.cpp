@@ -27,6 +27,7 @@ TEST_CASE("lens, clock and visibility of a host stay while the eye's entity is g
   told.edges.leftDeg = -20;
   told.julianDayUtc = 2460000.5;
   told.visibilityM = 3000;
+  told.clouds[0].coverage = 0.5;
   told.hostFrame = 7;
   CHECK(sources.sample(0).valid);
   told.valid = false;  // the session is as it was, but for the entity
@@ -41,6 +42,7 @@ TEST_CASE("lens, clock and visibility of a host stay while the eye's entity is g
     CHECK(sample.edges.leftDeg == -25.0);
     CHECK(sample.julianDayUtc == 2460000.5);
     CHECK(sample.visibilityM == 3000.0);
+    CHECK(sample.clouds == told.clouds);
     CHECK(sample.hostFrame == 8u);
     CHECK(sample.arrivedNs == 200);
   }

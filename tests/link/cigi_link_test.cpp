@@ -216,6 +216,38 @@ TEST_CASE("CIGI over UDP: questions come back as not valid where nobody knows th
   CHECK(replies.heard().sights == 1);
 }
 
+TEST_CASE("CIGI over UDP: a cloud layer of a Weather packet reaches the sample, and goes when it is switched off") {
+  for (const Version version : {Version{3, 3}, Version{4, 0}}) {
+    const uint16_t port = freePort();
+    const auto source = openStateSource(fmt::format("cigi://:{}", port));
+    const auto host = UdpSocket::connectTo({kLoopbackAddress, port});
+    uint32_t number = 0;
+    const auto says = [&](const Weather& weather) {
+      IgControl control;
+      control.mode = IgMode::operate;
+      control.hostFrame = number++;
+      Builder builder(Format{version, std::endian::big}, control);
+      REQUIRE(builder.add(weather));
+      CHECK(host->send(builder.take()) == SendOutcome::sent);
+      return waitFor(**source, number).clouds;
+    };
+    Weather cloud;
+    cloud.enabled = true;
+    cloud.layer = 2;
+    cloud.baseM = 1500, cloud.thicknessM = 400, cloud.transitionM = 60, cloud.coveragePercent = 75;
+    const CloudLayer told{1500, 1900, 60, 60, 0.75};
+    CHECK(says(cloud) == CloudLayers{CloudLayer{}, told, CloudLayer{}});
+    Weather fog = cloud;
+    fog.layer = 0;  // no cloud: nothing to be seen from outside
+    CHECK(says(fog)[1] == told);
+    Weather ofRegion = cloud;
+    ofRegion.scope = Scope::region, ofRegion.layer = 1;
+    CHECK(says(ofRegion)[0] == CloudLayer{});
+    cloud.enabled = false;
+    CHECK(says(cloud) == CloudLayers{});
+  }
+}
+
 TEST_CASE("CIGI over UDP: a synchronous host sends a frame for each Start of Frame, and begins by itself") {
   const uint16_t port = freePort();
   const auto source = openStateSource(fmt::format("cigi://:{}", port));

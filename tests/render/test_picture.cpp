@@ -4,27 +4,13 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <fstream>
-
 #include "geo/sun.h"
+#include "render/picture.h"
 #include "render/scene.h"
 #include "render/star_field.h"
 
 using namespace eye;
 using namespace eye::test;
-
-namespace {
-
-// For looking at: written where EYE_PICTURES names a folder.
-void keepPicture(const FrameOutput& frame, const std::string& name) {
-  const char* folder = std::getenv("EYE_PICTURES");
-  if (folder == nullptr) return;
-  std::ofstream out(std::string(folder) + "/" + name + ".ppm", std::ios::binary);
-  out << "P6\n" << frame.widthPx << " " << frame.heightPx << "\n255\n";
-  for (size_t i = 0; i < frame.rgba.size(); i += 4) out.write(reinterpret_cast<const char*>(&frame.rgba[i]), 3);
-}
-
-}  // namespace
 
 TEST_CASE("mountains under a sky, validation clean") {
   RendererOptions options;
