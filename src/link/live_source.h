@@ -25,7 +25,7 @@ class LiveSource final : public StateSource {
   void speakFrom(UdpSocket socket) { speaks_ = std::move(socket); }
 
   SourceSample sample(double) override {
-    const SourceSample sample = feed_.sample(monotonicNs());
+    SourceSample sample = feed_.sample(monotonicNs());
     shownHostFrame_ = sample.hostFrame;
     return sample;
   }

@@ -203,7 +203,8 @@ TEST_CASE("Suite pareto: each axis with time and error, the default on the front
     cullings.insert(row["culling"]);
     sizes.insert(row["size"]);
     defaults += row["is_default"].get<bool>();
-    if (row["culling"] == "dynamic" && row["depth_map"] == "auto" && row["samples"] == 1 && row["size"] == "800x600" &&
+    // With occlusion culling the count hangs on whether the selector has settled.
+    if (row["culling"] == "frustum" && row["samples"] == 1 && row["size"] == "800x600" &&
         row["sampler"] == report->rows[0]["sampler"])
       byTolerance[row["sse"]] = row;
   }
