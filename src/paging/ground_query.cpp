@@ -10,12 +10,6 @@
 namespace eye {
 namespace {
 
-// A line of sight, with what its tests against bounds share.
-struct Sight {
-  Vec3d from, way;
-  double perLengthSquared = 0;
-};
-
 // The foot of a plumb line, on the ellipsoid, and its way up: half the time of asking for each by itself.
 struct Plumb {
   Vec3d footEcefM, up;
@@ -30,28 +24,10 @@ Plumb plumbAt(double latDeg, double lonDeg) {
   return {primeVerticalM * Vec3d(up.x, up.y, (1 - kEccentricitySquared) * up.z), up};
 }
 
-bool meetsSphere(const GroundTree::Node& node, const Sight& sight) {
-  const Vec3d toCentre = node.sphereCentreEcefM - sight.from;
-  const double along = std::clamp(glm::dot(toCentre, sight.way) * sight.perLengthSquared, 0.0, 1.0);
-  const Vec3d apart = toCentre - sight.way * along;
-  return glm::dot(apart, apart) <= node.sphereRadiusM * node.sphereRadiusM;
-}
-
-// Where a line enters a node's box, as a share of its way; nothing where it misses it.
-std::optional<double> entryOf(const GroundTree::Node& node, const Sight& sight) {
-  const Vec3d fromCentre = sight.from - node.boxCentreEcefM;
-  double enters = 0, leaves = 1;
-  for (const size_t i : {size_t{2}, size_t{0}, size_t{1}}) {  // upwards first: most lines pass above
-    const double at = glm::dot(fromCentre, node.boxAxes[i]), speed = glm::dot(sight.way, node.boxAxes[i]);
-    const double extentM = node.boxExtentsM[i], end = at + speed;
-    if (std::min(at, end) > extentM || std::max(at, end) < -extentM) return std::nullopt;
-    if (std::max(std::abs(at), std::abs(end)) <= extentM) continue;  // between the planes all the way
-    const double per = 1 / speed, first = (-extentM - at) * per, second = (extentM - at) * per;
-    enters = std::max(enters, std::min(first, second));
-    leaves = std::min(leaves, std::max(first, second));
-  }
-  return enters <= leaves ? std::optional(enters) : std::nullopt;
-}
+struct Waiting {
+  float enters = 0;
+  GroundTree::NodeNumber node = 0;
+};
 
 }  // namespace
 
@@ -90,48 +66,51 @@ Result<GroundHit> GroundQuery::under(double latDeg, double lonDeg) {
 // nearest hit. Siblings wait in this order on a stack, so that what is near is looked at first.
 Result<std::optional<GroundHit>> GroundQuery::between(const Vec3d& fromEcefM, const Vec3d& toEcefM) {
   if (const auto begun = tree_.begin(); !begun) return tl::unexpected(begun.error());
-  Sight sight{fromEcefM, toEcefM - fromEcefM};
-  const double lengthSquared = glm::dot(sight.way, sight.way);
-  if (lengthSquared > 0) sight.perLengthSquared = 1 / lengthSquared;
+  const Sight sight = sightBetween(fromEcefM, toEcefM);
 
   int looked = 0;
-  waiting_.clear();
-  // The children of one node, the farthest of them first onto the stack.
-  const auto push = [&](GroundTree::NodeNumber first, uint32_t count, double nearestAlong) {
-    const size_t begin = waiting_.size();
-    for (GroundTree::NodeNumber number = first; number < first + count; ++number) {
-      ++looked;
-      const GroundTree::Node& node = tree_.node(number);
-      if (!meetsSphere(node, sight)) continue;
-      const auto enters = entryOf(node, sight);
-      if (!enters || *enters > nearestAlong) continue;
-      waiting_.push_back({*enters, number});
-      for (size_t i = waiting_.size() - 1; i > begin && waiting_[i].enters > waiting_[i - 1].enters; --i)
-        std::swap(waiting_[i], waiting_[i - 1]);
+  float untilAlong = 1;  // the nearest hit, rounded up
+  // All that a way down leaves behind on each level, the roots, and room for those that turn out not to be met.
+  std::array<Waiting, SiblingBounds::kLanes*(GroundTree::kMostAncestors + kMaxLevel + 1)> waiting;
+  size_t count = 0;
+  const auto push = [&](const GroundTree::Siblings& siblings) {
+    const size_t begin = count;
+    const SiblingBounds::Entries entries = siblings.bounds.entriesOf(sight, untilAlong);
+    // Without a branch: which are met is beyond a processor's guessing.
+    for (uint32_t lane = 0; lane < siblings.count; ++lane) {
+      waiting[count] = {entries.along[lane], siblings.first + lane};
+      count += static_cast<size_t>(-entries.met[lane]);
     }
+    // The farthest of them comes first onto the stack.
+    for (size_t added = begin + 1; added < count; ++added)
+      for (size_t i = added; i > begin && waiting[i].enters > waiting[i - 1].enters; --i)
+        std::swap(waiting[i], waiting[i - 1]);
+    looked += static_cast<int>(siblings.count);
   };
 
   double nearestAlong = 1;
   std::optional<GroundHit> nearest;
-  push(0, kOctants, nearestAlong);
-  while (!waiting_.empty()) {
-    const Waiting next = waiting_.back();
-    waiting_.pop_back();
-    if (next.enters > nearestAlong) continue;
+  const auto ancestors = tree_.ancestorsFor(sight);
+  if (!ancestors) return tl::unexpected(ancestors.error());
+  for (const uint32_t number : *ancestors) push(tree_.siblings(number));
+  while (count > 0) {
+    const Waiting next = waiting[--count];
+    if (next.enters > untilAlong) continue;
     if (!tree_.node(next.node).isLeaf) {
-      const auto first = tree_.childrenOf(next.node);
-      if (!first) return tl::unexpected(first.error());
-      push(*first, tree_.node(next.node).childCount, nearestAlong);
+      const auto children = tree_.childrenOf(next.node);
+      if (!children) return tl::unexpected(children.error());
+      push(**children);
       if (looked > kMostChunks)
         return fail(ErrorKind::unsupported, fmt::format("a line of sight meets more than {} chunks", kMostChunks));
       continue;
     }
     const auto surface = tree_.surfaceOf(next.node);
     if (!surface) return tl::unexpected(surface.error());
-    const auto hit = (*surface)->cast(fromEcefM, sight.way, nearestAlong);
+    const auto hit = (*surface)->cast(fromEcefM, sight.wayEcefM, nearestAlong);
     if (!hit) continue;
     nearestAlong = hit->along;
-    nearest = GroundHit{{}, fromEcefM + sight.way * hit->along, (*surface)->normalEcef(hit->triangle)};
+    untilAlong = std::nextafter(static_cast<float>(nearestAlong), 2.0F);
+    nearest = GroundHit{{}, fromEcefM + sight.wayEcefM * hit->along, (*surface)->normalEcef(hit->triangle)};
   }
   if (nearest) nearest->position = geodeticFromEcef(nearest->ecefM);
   return nearest;

@@ -29,12 +29,7 @@ class GroundQuery {
  private:
   explicit GroundQuery(DatabaseReader reader) : tree_(std::move(reader)) {}
 
-  struct Waiting {
-    double enters = 0;
-    GroundTree::NodeNumber node = 0;
-  };
   GroundTree tree_;
-  std::vector<Waiting> waiting_;  // between() alone's; kept for its memory
 };
 
 }  // namespace eye

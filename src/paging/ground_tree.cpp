@@ -8,7 +8,11 @@ namespace {
 
 constexpr size_t kSurfacesBudgetBytes = 32 << 20;
 constexpr size_t kMostNodes = 16'384;  // some 5 MiB; a question adds a few thousand at most
-constexpr double kBoxSlackM = 0.01;    // for a box without a height
+// Sights are mostly shorter than half of it; one of 10 km round the first of them takes 10 % less time.
+constexpr double kBallRadiusM = 64'000;
+constexpr std::array<uint32_t, 2> kRoots{0, 1};  // siblings, the octants: begin() adds them first
+static_assert(kRoots.size() * SiblingBounds::kLanes == kOctants);
+constexpr double kBoxSlackM = 0.01;  // for a box without a height
 
 // As TileKey::containing: cells own their south and west edges, and the pole's cells the pole. Across an edge levels
 // may differ, so it must not depend on what was asked before.
@@ -18,62 +22,99 @@ bool holds(const TileBounds& bounds, double latDeg, double lonDeg) {
 }
 
 // A chunk's bounds are those of its own mesh. What is finer reaches beyond them: up and down by both meshes' errors, of
-// which the coarser one's is the greater; sideways where edges are chords of the cell's, by the square of their length.
+// which the coarser one's is the greater; and where an edge is a chord of its cell's parallel, sideways by the chord's
+// height times the sine of the latitude, with whatever heights are there. A chord's height is at most so much of its
+// length's square; and what of it is upwards, its height times the cosine, is at most what ground and error leave it.
 double reachBeyondM(const ChunkMeta& meta) {
   constexpr double kSideways = 4;  // of a chord's height on the Earth; the parallels' edges bend more, up to 80 degrees
-  return 2 * meta.geometricErrorM + kSideways * meta.sphereRadiusM * meta.sphereRadiusM / kMeanEarthRadiusM;
+  const double ofLengthM = kSideways * meta.sphereRadiusM * meta.sphereRadiusM / kMeanEarthRadiusM;
+  const TileBounds bounds = meta.key.bounds();
+  const double polewardDeg = std::max(std::abs(bounds.southDeg), std::abs(bounds.northDeg));
+  const double reliefM = meta.maxHeightM - meta.minHeightM + 2 * meta.geometricErrorM;
+  const double ofReliefM = polewardDeg < 90 ? reliefM * (1 + std::tan(glm::radians(polewardDeg))) : ofLengthM;
+  return 2 * meta.geometricErrorM + std::min(ofLengthM, ofReliefM);
 }
 
 }  // namespace
 
-Result<void> GroundTree::add(const TileKey& key) {
-  const Result<ChunkMeta> meta = reader_.readMeta(key);
-  if (!meta) return tl::unexpected(meta.error());
-  Node node;
-  node.key = key;
-  node.bounds = key.bounds();
-  node.sphereCentreEcefM = meta->sphereCentreEcefM;
-  node.isLeaf = meta->childCount == 0;
-  const double reachM = kBoxSlackM + (node.isLeaf ? 0 : reachBeyondM(*meta));
-  node.sphereRadiusM =
-      meta->sphereRadiusM + 2 * reachM;  // more than the root of three, of a corner moved along each axis
-  node.boxCentreEcefM = meta->box.centreEcefM;
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const Vec3d& half = meta->box.halfAxesEcefM[axis];
-    const double lengthM = glm::length(half);
-    if (lengthM > 0) node.boxAxes[axis] = half / lengthM;  // an axis of 0 parts nothing
-    node.boxExtentsM[axis] = lengthM + reachM;
+// Siblings, all of them or none.
+Result<void> GroundTree::add(std::span<const TileKey> keys) {
+  const auto first = static_cast<NodeNumber>(nodes_.size());
+  Siblings siblings{first, static_cast<uint32_t>(keys.size()), {}};
+  for (uint32_t lane = 0; lane < siblings.count; ++lane) {
+    const TileKey& key = keys[lane];
+    const Result<ChunkMeta> meta = reader_.readMeta(key);
+    if (!meta) {
+      nodes_.resize(first);
+      return tl::unexpected(meta.error());
+    }
+    const bool isLeaf = meta->childCount == 0;
+    siblings.bounds.set(lane, meta->box, kBoxSlackM + (isLeaf ? 0 : reachBeyondM(*meta)));
+    nodes_.push_back({.bounds = key.bounds(), .key = key, .isLeaf = isLeaf, .kept = {}, .children = {}});
   }
-  nodes_.push_back(std::move(node));
+  siblings_.push_back(siblings);
   return {};
 }
 
 Result<void> GroundTree::begin() {
-  if (nodes_.size() >= kOctants && nodes_.size() <= kMostNodes) return {};
+  if (siblings_.size() >= kRoots.size() && nodes_.size() <= kMostNodes) return {};
   nodes_.clear();
+  siblings_.clear();
+  ball_.radiusM = -1;
   kept_.clear();
   keptBytes_ = 0;
   lastLeaf_ = 0;
-  for (int octant = 0; octant < kOctants; ++octant) {
-    const Result<void> added = add(TileKey::octantRoot(octant));
+  std::array<TileKey, kOctants> roots;
+  for (int octant = 0; octant < kOctants; ++octant) roots[static_cast<size_t>(octant)] = TileKey::octantRoot(octant);
+  for (const uint32_t number : kRoots) {
+    const Result<void> added = add(std::span(roots).subspan(number * SiblingBounds::kLanes, SiblingBounds::kLanes));
     if (!added) return added;
   }
   return {};
 }
 
-Result<GroundTree::NodeNumber> GroundTree::childrenOf(NodeNumber number) {
-  if (nodes_[number].firstChild != 0) return nodes_[number].firstChild;
-  const auto first = static_cast<NodeNumber>(nodes_.size());
-  const TileList<4> children = nodes_[number].key.children();
-  for (const TileKey& child : children) {
-    const Result<void> added = add(child);
-    if (added) continue;
-    nodes_.resize(first);
-    return tl::unexpected(added.error());
+Result<std::span<const uint32_t>> GroundTree::ancestorsFor(const Sight& sight) {
+  if (glm::length(sight.wayEcefM) > kBallRadiusM) return kRoots;
+  // A ball is convex: where it holds both ends, it holds the line.
+  const auto holds = [this](const Vec3d& ecefM) { return glm::length(ecefM - ball_.centreEcefM) <= ball_.radiusM; };
+  if (!holds(sight.fromEcefM) || !holds(sight.fromEcefM + sight.wayEcefM)) {
+    ball_.radiusM = -1;
+    const Ball ball{sight.fromEcefM, kBallRadiusM};
+    const Result<void> descended = descendTowards(ball);
+    if (!descended) return tl::unexpected(descended.error());
+    ball_ = ball;
   }
-  nodes_[number].firstChild = first;
-  nodes_[number].childCount = static_cast<uint32_t>(children.count);
-  return first;
+  return ancestors_;
+}
+
+// All octants, then level by level what of their children reaches into the ball, while those are few.
+Result<void> GroundTree::descendTowards(const Ball& ball) {
+  ancestors_.assign(kRoots.begin(), kRoots.end());
+  while (true) {
+    descendants_.clear();
+    for (const uint32_t ancestor : ancestors_) {
+      const SiblingBounds::Mask near = siblings_[ancestor].bounds.reachInto(ball);
+      const NodeNumber first = siblings_[ancestor].first;
+      for (uint32_t lane = 0; lane < siblings_[ancestor].count; ++lane) {
+        if (!near[lane]) continue;
+        if (nodes_[first + lane].isLeaf || descendants_.size() == kMostAncestors) return {};
+        const Result<const Siblings*> children = childrenOf(first + lane);
+        if (!children) return tl::unexpected(children.error());
+        descendants_.push_back(*nodes_[first + lane].children);
+      }
+    }
+    ancestors_.swap(descendants_);
+  }
+}
+
+Result<const GroundTree::Siblings*> GroundTree::childrenOf(NodeNumber innerNode) {
+  if (!nodes_[innerNode].children) {
+    const TileList<4> children = nodes_[innerNode].key.children();
+    const Result<void> added = add({children.begin(), children.end()});
+    if (!added) return tl::unexpected(added.error());
+    nodes_[innerNode].children = static_cast<uint32_t>(siblings_.size() - 1);
+  }
+  return &siblings_[*nodes_[innerNode].children];
 }
 
 Result<const SurfaceGrid*> GroundTree::surfaceOf(NodeNumber number) {
@@ -109,9 +150,9 @@ Result<GroundTree::NodeNumber> GroundTree::leafAt(double latDeg, double lonDeg) 
   };
   NodeNumber number = within(0, kOctants);
   while (!nodes_[number].isLeaf) {
-    const Result<NodeNumber> first = childrenOf(number);
-    if (!first) return first;
-    number = within(*first, nodes_[number].childCount);
+    const Result<const Siblings*> children = childrenOf(number);
+    if (!children) return tl::unexpected(children.error());
+    number = within((*children)->first, (*children)->count);
   }
   return lastLeaf_ = number;
 }

@@ -4,7 +4,9 @@
 
 #include <list>
 #include <optional>
+#include <span>
 
+#include "paging/sibling_bounds.h"
 #include "paging/surface_grid.h"
 #include "terrain/database.h"
 
@@ -20,38 +22,47 @@ class GroundTree {
     SurfaceGrid surface;
   };
   struct Node {
-    Vec3d sphereCentreEcefM{};
-    double sphereRadiusM = 0;
-    Vec3d boxCentreEcefM{};
-    std::array<Vec3d, 3> boxAxes{};  // unit
-    std::array<double, 3> boxExtentsM{};
     TileBounds bounds{};
     TileKey key;
     bool isLeaf = true;
-    NodeNumber firstChild = 0;  // 0: not read yet, or a leaf
-    uint32_t childCount = 0;
     std::optional<std::list<Kept>::iterator> kept;
+    std::optional<uint32_t> children;  // a number of siblings(); not read yet, or a leaf
+  };
+  struct Siblings {
+    NodeNumber first = 0;  // the others have the numbers after it
+    uint32_t count = 0;
+    SiblingBounds bounds;  // in this order
   };
 
-  // Before each question. Forgets all where there are too many nodes; then reads the octants' roots, numbers 0 to 7.
-  // Numbers and surfaces are valid up to the next call.
+  // Before each question. Forgets all where there are too many nodes; then reads the octants' roots. Numbers and
+  // surfaces are valid up to the next call.
   Result<void> begin();
   const Node& node(NodeNumber number) const { return nodes_[number]; }  // up to the next childrenOf or leafAt
-  // The first child of an inner node; the others have the numbers after it.
-  Result<NodeNumber> childrenOf(NodeNumber number);
+  static constexpr size_t kMostAncestors = 8;
+  // Siblings that all terrain on a line descends from: numbers for siblings(), at most kMostAncestors, up to the next
+  // begin(). Lines near each other begin far down, as the way from the octants is found once for a ball that holds
+  // them.
+  Result<std::span<const uint32_t>> ancestorsFor(const Sight& sight);
+  const Siblings& siblings(uint32_t number) const { return siblings_[number]; }  // up to the next childrenOf or leafAt
+  // Up to the next childrenOf or leafAt.
+  Result<const Siblings*> childrenOf(NodeNumber innerNode);
   // Of a leaf; up to the next call.
   Result<const SurfaceGrid*> surfaceOf(NodeNumber number);
   // The leaf that holds a place.
   Result<NodeNumber> leafAt(double latDeg, double lonDeg);
 
  private:
-  Result<void> add(const TileKey& key);
+  Result<void> add(std::span<const TileKey> keys);
+  Result<void> descendTowards(const Ball& ball);
 
   DatabaseReader reader_;
   std::vector<Node> nodes_;
+  std::vector<Siblings> siblings_;
   std::list<Kept> kept_;  // the newest first
   size_t keptBytes_ = 0;
-  NodeNumber lastLeaf_ = 0;  // of a height: the next is asked nearby, mostly
+  Ball ball_;  // all that reaches into it descends from the ancestors; of none while its radius is negative
+  std::vector<uint32_t> ancestors_, descendants_;  // the second for its memory alone
+  NodeNumber lastLeaf_ = 0;                        // of a height: the next is asked nearby, mostly
 };
 
 }  // namespace eye

@@ -206,6 +206,38 @@ TEST_CASE("ground query: lines of sight hit what the nearest of all triangles sa
   CHECK(misses > 100);
 }
 
+// Lines near the last begin at what is in reach of it, lines of 100 km and more at the octants.
+TEST_CASE("ground query: a line hits what a longer one hits, wherever the last one was") {
+  auto query = GroundQuery::open(hills()), fromOctants = GroundQuery::open(hills());
+  REQUIRE((query && fromOctants));
+  std::mt19937_64 random(9);
+  const auto within = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  Geodetic at{};
+  int hits = 0;
+  for (int i = 0; i < 2000; ++i) {
+    // Over the hills, round them at the reach of what is kept, or anywhere on Earth; steps of that kind.
+    const double reachDeg[] = {0.2, 1.2, 1.2, 90};
+    const double reach = reachDeg[i == 0 ? 0 : random() % 4];
+    at = {std::clamp(49.25 + within(-reach, reach), -89.0, 89.0), 20.25 + 2 * within(-reach, reach), within(0, 1500)};
+    const double lengthDeg = std::pow(10, within(-3, -0.5));
+    const Geodetic end{at.latDeg + within(-lengthDeg, lengthDeg), at.lonDeg + within(-lengthDeg, lengthDeg),
+                       at.altM + within(-800, 300)};
+    const Vec3d from = ecefFromGeodetic(at), way = ecefFromGeodetic(end) - from;
+    const double longer = std::max(100'000 / glm::length(way), 1.0);
+    const auto hit = query->between(from, from + way), further = fromOctants->between(from, from + way * longer);
+    REQUIRE((hit && further));
+    const bool isTrue = *further && glm::length((*further)->ecefM - from) <= glm::length(way);
+    INFO(i << ": " << at.latDeg << " " << at.lonDeg << " " << at.altM << " to " << end.latDeg << " " << end.lonDeg
+           << " " << end.altM);
+    REQUIRE(hit->has_value() == isTrue);
+    hits += isTrue;
+    if (isTrue) CHECK(glm::length((*hit)->ecefM - (*further)->ecefM) < 1e-3);
+  }
+  CHECK(hits > 200);
+}
+
 TEST_CASE("ground query: what has been forgotten is read again, with the same answers") {
   auto warm = GroundQuery::open(hills());
   REQUIRE(warm);
