@@ -18,7 +18,7 @@ void main() {
   // Through the air, whose depth is given as displayed, and drowned by a sky brighter than itself.
   float through = exp(-0.25 * frame.airDepth.g * skyColumn(rise));
   vec3 sky = skyColour(rise, dot(ray_eye, frame.sun_eye.xyz));
-  float dark = max(1.0 - 3.0 * max(max(sky.r, sky.g), sky.b), 0.0);
+  float dark = max(1.0 - 3.0 * max(max(sky.r, sky.g), sky.b), 0.0) * (1.0 - frame.airDepth.w);
   outBrightness = inRayBrightness.w * through * dark;
   gl_Position = vec4(inNdcHalf.xy + inNdcHalf.zw * corner, EYE_CLEAR_DEPTH, 1.0);
 }

@@ -39,7 +39,8 @@ vec3 skyColour(float rise, float towardsSun) {
   if (rise < 0.0) sunHeight = (sunHeight - rise * towardsSun) * inversesqrt(max(1.0 - rise * rise, 1e-6));
   float lit = skyLit(sunHeight);
   vec3 scattered = 1.0 - exp(-frame.airDepth.rgb * skyColumn(rise));
-  return lit * (frame.deepSky.rgb * scattered + frame.glow.rgb * (glowShape(towardsSun) * scattered.g));
+  vec3 sky = lit * (frame.deepSky.rgb * scattered + frame.glow.rgb * (glowShape(towardsSun) * scattered.g));
+  return mix(sky, hazeColour(towardsSun, frame.skyLight.w), frame.airDepth.w);
 }
 
 // What the sun's disc adds to that. It is half a degree wide; its rim is softened over a tenth of that. The distance of

@@ -51,11 +51,12 @@ GroundLight lightAt(vec3 position_ecef) {
   vec3 up = normalize(frame.up_ecef.xyz * frame.up_eye.w + position_ecef * (1.0 / EYE_EARTH_RADIUS_M));
   vec3 normal = normalFromOctahedral(inNormal);
   float sunHeight = dot(up, frame.sun_ecef.xyz);
-  ground.lit = skyLit(sunHeight);
+  float lit = skyLit(sunHeight);
+  ground.lit = mix(lit, frame.skyLight.w, frame.airDepth.w);
   // The sun's disc rises over two degrees; the sky lights a slope by how much of it the slope sees; moon and stars
   // leave a third of that, so that terrain stays faintly visible.
   float sunlight = max(dot(normal, frame.sun_ecef.xyz), 0.0) * smoothstep(-0.02, 0.06, sunHeight);
-  float skylight = (0.6 + 0.4 * dot(normal, up)) * (0.25 + 0.75 * ground.lit);
+  float skylight = (0.6 + 0.4 * dot(normal, up)) * (0.25 + 0.75 * lit);
   ground.colour = frame.sunLight.rgb * sunlight + frame.skyLight.rgb * skylight;
   return ground;
 }

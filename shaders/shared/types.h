@@ -37,8 +37,9 @@ struct FrameData {
   vec4 sun_eye;         // towards the sun; w: density of the air at the eye, over the ground's
   vec4 sun_ecef;        // w: density of the air where a ray from above enters it (at most EYE_AIR_TOP_M up)
   vec4 sunLight;        // colour of direct light on terrain; w: the haze's extinction per metre at sea level
-  vec4 skyLight;        // colour of the light of the whole sky
-  vec4 airDepth;        // optical depths, red to blue, of a vertical column of air and haze, from sea level
+  vec4 skyLight;        // colour of the light of the whole sky; w: how far the haze about the eye is lit
+  vec4 airDepth;        // optical depths, red to blue, of a vertical column of air and haze, from sea level; w: how far
+                        // the eye stands in fog, 0 to 1: nothing but what is lit about it shows
   vec4 deepSky;         // colour of an endlessly deep sky by day, away from the sun
   vec4 glow;            // colour added to it towards the sun; w: brightness of the sun's disc
   vec4 horizon;         // deepSky as the horizon shows it

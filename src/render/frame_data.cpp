@@ -28,6 +28,11 @@ double smoothstep(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
+// Nothing of the sky shows through fog of less than 200 m of visibility, all of it through what is called mist or haze.
+double fogAt(double visibilityM) {
+  return 1 - smoothstep(std::log(200), std::log(5000), std::log(std::max(visibilityM, 1.0)));
+}
+
 glm::mat4 clipFromEcef(const View& view) {
   const Frustum& f = view.frustum;
   const double width = f.tanRight - f.tanLeft, height = f.tanTop - f.tanBottom;
@@ -48,7 +53,7 @@ void setLight(double rise, double air, double hazeDepth, shader::FrameData& fram
   const double column = air * EYE_LEVEL_COLUMN / (EYE_LEVEL_COLUMN * std::max(rise, 0.0) + 1);
   const glm::dvec3 through = glm::sqrt(glm::exp(-kAirDepth * column * 0.5));
   frame.sunLight = vec4(vec3(0.92 * through), frame.sunLight.w);
-  frame.skyLight = vec4(0.36f, 0.39f, 0.45f, 0.0f);
+  frame.skyLight = vec4(0.36, 0.39, 0.45, std::lerp(EYE_NIGHT_SKY, 1.0, smoothstep(-0.25, 0.10, rise)));
 
   const double low = (1 - smoothstep(0.0, 0.35, std::abs(rise))) * air;
   const glm::dvec3 byDay(0.80, 0.90, 1.02), byDusk(0.70, 0.65, 0.74);
@@ -90,6 +95,10 @@ shader::FrameData frameData(const FrameInput& input) {
   frame.domeAhead_ecef = vec4(vec3(domeAhead(upEcef)), 0.0f);
   frame.sunLight.w = static_cast<float>(extinction);
   setLight(glm::dot(upEcef, sunEcef), density(eye.altM), kHazeShare * atGround * EYE_AIR_SCALE_M, frame);
+  // In fog the whole sky is the fog's, and no sun or star shows.
+  const double fog = input.background ? 0 : fogAt(input.lighting.visibilityM);
+  frame.airDepth.w = static_cast<float>(fog);
+  frame.glow.w *= static_cast<float>(1 - fog);
   // Under clouds the sun shines neither on the ground nor into the haze.
   const float sunThrough = static_cast<float>(sunThroughClouds(input.lighting.clouds, eye.altM));
   for (vec4* light : {&frame.sunLight, &frame.horizonGlow}) *light = vec4(vec3(*light) * sunThrough, light->w);

@@ -159,3 +159,27 @@ TEST_CASE("the dome's part holds every ray of the view") {
   }
   CHECK(parts > 500);  // not all of them whole rounds
 }
+
+TEST_CASE("in fog neither the horizon shows nor the sun, nor ground that is lit elsewhere") {
+  const BothWays both = makeBoth();
+  if (!both) return;
+  // 3 km up the horizon is nearly two degrees below the level, where the sun that has set here still shines.
+  const Pose pose{{49.0 - 0.2, 20.0, 3000}, 0, 0, 0};
+  for (Renderer* renderer : {both.byVertex.get(), both.byPixel.get()}) {
+    const std::vector<ChunkDraw> draws = mountains(*renderer, 13, ecefFromGeodetic(pose.position));
+    for (const double sunDeg : {20.0, -1.0, -12.0}) {
+      const auto steepest = [&](double visibilityM) {
+        FrameInput input = lit(pose, sunDeg, 10, visibilityM);
+        input.draws = draws;
+        const auto frame = renderer->drawFrame(input);
+        REQUIRE(frame.has_value());
+        constexpr size_t kRow = 4 * 320;
+        std::span<const uint8_t> rgba = frame->rgba;
+        return differenceOf(rgba.first(rgba.size() - kRow), rgba.subspan(kRow)).greatest;
+      };
+      INFO("sun at " << sunDeg << " degrees");
+      CHECK(steepest(150) <= 2 + kDither);
+      CHECK(steepest(60000) > 10);
+    }
+  }
+}
