@@ -204,6 +204,21 @@ TEST_CASE("live feed: lens and clock are told while the eye's entity is gone") {
   CHECK(sample.hostFrame == 2u);
 }
 
+TEST_CASE("live feed: a host mirrors the view, and turns it back") {
+  Fed<cigi::Receiver> fed(HostLock(), "test", silent(), OpenProbe{});
+  uint32_t frame = 1;
+  for (const cigi::Mirror mirror :
+       {cigi::Mirror::horizontal, cigi::Mirror::vertical, cigi::Mirror::both, cigi::Mirror::none}) {
+    cigi::ViewDefinition lens;
+    lens.mirror = mirror;
+    fed.nowNs += 10 * kMs;
+    CHECK(fed.hear(cigiMessage(frame++, {cigiEntity(100), lens})));
+    const ViewEdges edges = fed.sample().edges;
+    CHECK(edges.mirrorsAcross == (mirror == cigi::Mirror::horizontal || mirror == cigi::Mirror::both));
+    CHECK(edges.mirrorsUpright == (mirror == cigi::Mirror::vertical || mirror == cigi::Mirror::both));
+  }
+}
+
 TEST_CASE("live feed: what came between two frames is told in order, at the host's moments, and bounded") {
   Fed<cigi::Receiver> fed(HostLock(), "test", silent(), OpenProbe{});
   const int64_t beganNs = fed.nowNs;
