@@ -91,8 +91,8 @@ TEST_CASE("the depth map of four samples holds a pixel's farthest") {
 
 TEST_CASE("each sampler draws its own picture, the device's is one of them") {
   std::vector<Kept> kept;
-  for (const TextureFilter filter :
-       {TextureFilter::device, TextureFilter::nearest, TextureFilter::bilinear, TextureFilter::trilinear}) {
+  for (const TextureFilter filter : {TextureFilter::device, TextureFilter::nearest, TextureFilter::bilinear,
+                                     TextureFilter::trilinear, TextureFilter::anisotropic}) {
     const auto renderer = makeRenderer(options(1, filter));
     if (!renderer) return;
     if (filter != TextureFilter::device) CHECK(renderer->textureFilter() == filter);
@@ -105,6 +105,8 @@ TEST_CASE("each sampler draws its own picture, the device's is one of them") {
   }
   CHECK((kept[1].rgba != kept[2].rgba));
   CHECK((kept[2].rgba != kept[3].rgba));
-  CHECK((kept[0].rgba == kept[2].rgba || kept[0].rgba == kept[3].rgba));
+  CHECK((kept[3].rgba != kept[4].rgba));
+  CHECK((kept[0].rgba == kept[2].rgba || kept[0].rgba == kept[3].rgba || kept[0].rgba == kept[4].rgba));
   CHECK((kept[1].depth == kept[3].depth));
+  CHECK((kept[1].depth == kept[4].depth));
 }
