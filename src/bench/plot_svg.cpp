@@ -178,7 +178,8 @@ std::string drawing(const ReportPlot& plot) {
 // The page's colours, for a picture that has no page; readers of SVG ask for light or dark as browsers do.
 constexpr const char* kPictureStyle =
     "svg{color-scheme:light dark;--ink:#1c2733;--soft:#5b6b7b;--line:#d8dfe6;--card:#fff}"
-    "@media(prefers-color-scheme:dark){svg{--ink:#e4e9ee;--soft:#9aa8b5;--line:#33404c;--card:#1c242c}}"
+    "@media(prefers-color-scheme:dark){svg{--ink:#e4e9ee;--soft:#9aa8b5;--line:#33404c;--card:#1c242c}"
+    "polyline,circle,rect:not(.card){filter:brightness(1.35)}}"
     "text{fill:var(--soft);font:12px system-ui,sans-serif}.axis{stroke:var(--line)}.legend{fill:var(--ink)}"
     ".title{fill:var(--ink);font:600 15px system-ui,sans-serif}.card{fill:var(--card)}";
 constexpr double kTitle = 34, kMargin = 8;

@@ -26,12 +26,13 @@ figure:has(table) { background: linear-gradient(to left, var(--card) 60%, transp
 figure th:first-child:not(.group), figure td:first-child { position: sticky; left: -1rem; padding-left: 1rem; background: var(--card); }
 figcaption { font-weight: 600; margin-bottom: .5rem; }
 table { font-size: .88em; border-collapse: collapse; font-variant-numeric: tabular-nums; width: 100%; }
-th, td { padding: .22rem .5rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
+th, td { padding: .22rem .38rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th:first-child, td:first-child { text-align: left; }
 th { font-weight: 600; color: var(--soft); } th.group { text-align: center; border-left: 1px solid var(--line); }
 ul.targets { list-style: none; padding: 0; } ul.targets li::before { display: inline-block; width: 1.4em; }
 li.reached::before { content: "\2713"; color: var(--good); } li.missed::before { content: "\2717"; color: var(--bad); }
 svg { width: 100%; height: auto; display: block; } svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
+@media (prefers-color-scheme: dark) { svg :is(polyline, circle, rect) { filter: brightness(1.35); } }
 svg .axis { stroke: var(--line); } svg .legend { fill: var(--ink); }
 li { margin: .25rem 0; } a { color: var(--link); } section { scroll-margin-top: 1rem; }
 th.theirs, td.theirs, tr.theirs td { background: var(--theirs); color: var(--soft); font-style: italic; }
