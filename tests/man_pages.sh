@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Every option of a program stands in its man page and in docs/OPTIONS.md, and no other: tests/man_pages.sh FOLDER-OF-PROGRAMS
 set -uo pipefail
-bin=$1
+bin=$(realpath "$1")
 cd "$(dirname "${BASH_SOURCE[0]}")/../docs" || exit
 status=0
 differ() { # PROGRAM WHERE OFFERED DESCRIBED

@@ -119,9 +119,9 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   std::error_code failed;
   if (embedded && !std::filesystem::exists(terrain, failed))
     return fail(ErrorKind::notFound,
-                fmt::format("{}: the embedded terrain is not baked yet; run tools/run.sh, or eyepoint-bake "
-                            "demo --out {}, or give --terrain FILE",
-                            terrain, terrain));
+                fmt::format("{}: the embedded terrain is not baked yet; run eyepoint-bake demo, which takes "
+                            "about a minute, or give --terrain FILE",
+                            terrain));
   const Result<DatabaseReader> database = DatabaseReader::open(terrain);
   if (!database) return tl::unexpected(database.error());
   const OpenProbe openProbe = [terrain] { return openTerrainProbe(terrain); };

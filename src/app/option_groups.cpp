@@ -108,10 +108,10 @@ void addQuality(CLI::App& app, Options& o) {
       ->group(group);
   app.add_option_function<std::string>(
          "--sampler", [&o](const std::string& t) { o.sampler = filterOf(t); },
-         "How imagery is read: nearest, bilinear within the nearest level of detail, trilinear;\n"
-         "auto (default): bilinear on a CPU, trilinear on a GPU")
-      ->type_name("auto/nearest/bilinear/trilinear")
-      ->check(CLI::IsMember({"auto", "nearest", "bilinear", "trilinear"}))
+         "How imagery is read: nearest, bilinear within the nearest level of detail, trilinear,\n"
+         "anisotropic; auto (default): bilinear on a CPU, anisotropic on a GPU that can, else trilinear")
+      ->type_name("auto/nearest/bilinear/trilinear/anisotropic")
+      ->check(CLI::IsMember({"auto", "nearest", "bilinear", "trilinear", "anisotropic"}))
       ->group(group);
   app.add_option("--samples", o.samples, "Samples a pixel: 1 (default), or 4: smooth edges at about twice the time")
       ->type_name("1/4")

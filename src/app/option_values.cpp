@@ -78,10 +78,11 @@ CullingMode cullingOf(const std::string& text) {
 }
 
 TextureFilter filterOf(const std::string& text) {
-  return text == "nearest"     ? TextureFilter::nearest
-         : text == "bilinear"  ? TextureFilter::bilinear
-         : text == "trilinear" ? TextureFilter::trilinear
-                               : TextureFilter::device;
+  return text == "nearest"       ? TextureFilter::nearest
+         : text == "bilinear"    ? TextureFilter::bilinear
+         : text == "trilinear"   ? TextureFilter::trilinear
+         : text == "anisotropic" ? TextureFilter::anisotropic
+                                 : TextureFilter::device;
 }
 
 std::string nameOf(TextureFilter filter) {
@@ -92,6 +93,8 @@ std::string nameOf(TextureFilter filter) {
       return "bilinear";
     case TextureFilter::trilinear:
       return "trilinear";
+    case TextureFilter::anisotropic:
+      return "anisotropic";
     case TextureFilter::device:
       break;
   }

@@ -84,14 +84,6 @@ std::string oneLine(std::string text) {
 
 }  // namespace
 
-std::string defaultTerrainPath() {
-  const char* data = std::getenv("XDG_DATA_HOME");
-  const char* home = std::getenv("HOME");
-  const std::string folder =
-      data != nullptr && *data != '\0' ? data : std::string(home != nullptr ? home : ".") + "/.local/share";
-  return folder + "/eyepoint/demo.eyt";
-}
-
 std::string Options::settingsLine() const {
   const std::string map = depthMap == DepthMapMode::off     ? "off"
                           : depthMap == DepthMapMode::fixed ? fmt::format("{}x{}", depthMapPx.x, depthMapPx.y)

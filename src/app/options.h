@@ -9,6 +9,7 @@
 
 #include "app/debug_view.h"
 #include "base/error.h"
+#include "base/user_folders.h"
 #include "control/selector_rules.h"
 #include "geo/sun.h"
 #include "paging/lod_select.h"
@@ -93,8 +94,5 @@ struct ParsedOptions {
   std::string text;
 };
 ParsedOptions parseOptions(int argc, const char* const* argv);
-
-// $XDG_DATA_HOME/eyepoint/demo.eyt, else ~/.local/share/eyepoint/demo.eyt.
-std::string defaultTerrainPath();
 
 }  // namespace eye

@@ -153,8 +153,8 @@ Result<void> printDevices() {
   const Result<std::vector<DeviceDescription>> devices = Renderer::listDevices();
   if (!devices) return tl::unexpected(devices.error());
   for (const DeviceDescription& device : *devices)
-    fmt::print("{}\n  type {}, driver {}, Vulkan {}{}\n", device.name, device.type, device.driver, device.apiVersion,
-               device.usable ? "" : ", cannot be used: lacks " + device.lacks);
+    fmt::print("{}\n  type {}, driver {}, Vulkan {}\n  {}\n", device.name, device.type, device.driver,
+               device.apiVersion, device.usable ? device.choices : "cannot be used: lacks " + device.lacks);
   return {};
 }
 

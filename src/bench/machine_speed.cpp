@@ -105,7 +105,7 @@ Result<SpeedReference> SpeedReference::create(const std::string& device) {
   if (!gpu) return tl::unexpected(gpu.error());
   SpeedReference made;
   // What a GPU draws takes no CPU time.
-  if ((*gpu)->properties.deviceType != vk::PhysicalDeviceType::eCpu) return made;
+  if (!(*gpu)->traits.isCpu) return made;
   try {
     made.frame_ = std::make_unique<Frame>(std::move(*gpu));
   } catch (const vk::SystemError& e) {

@@ -13,7 +13,7 @@ constexpr double kWidth = 960, kHeight = 330;
 constexpr double kLetter = 6.6;  // of 12 px type, on average
 constexpr double kLeft = 64, kRight = 14, kTop = 34, kBottom = 46;
 // Told apart on light and dark ground, and by the colour-blind (Okabe and Ito, a little darker).
-constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#c4639a", "#b58900", "#3aa0d8", "#7f7f7f", "#5a3d99"};
+constexpr std::array kColours{"#0072b2", "#d55e00", "#009e73", "#c4639a", "#b58900", "#3aa0d8", "#7f7f7f", "#8a63d2"};
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
@@ -146,7 +146,7 @@ std::string lines(const ReportPlot& plot, const Axis& y) {
       const double px = xPx(x.share(series.x[i])), py = yPx(y.share(series.y[i]));
       if (series.areDots)
         svg +=
-            fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:g}\" fill=\"{}\" fill-opacity=\"0.6\">{}</circle>",
+            fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:g}\" fill=\"{}\" fill-opacity=\"0.8\">{}</circle>",
                         px, py, series.dotPx, kColours[s % kColours.size()],
                         i < series.labels.size() ? "<title>" + escapeHtml(series.labels[i]) + "</title>" : "");
       else
@@ -178,7 +178,8 @@ std::string drawing(const ReportPlot& plot) {
 // The page's colours, for a picture that has no page; readers of SVG ask for light or dark as browsers do.
 constexpr const char* kPictureStyle =
     "svg{color-scheme:light dark;--ink:#1c2733;--soft:#5b6b7b;--line:#d8dfe6;--card:#fff}"
-    "@media(prefers-color-scheme:dark){svg{--ink:#e4e9ee;--soft:#9aa8b5;--line:#33404c;--card:#1c242c}}"
+    "@media(prefers-color-scheme:dark){svg{--ink:#e4e9ee;--soft:#9aa8b5;--line:#33404c;--card:#1c242c}"
+    "polyline,circle,rect:not(.card){filter:brightness(1.35)}}"
     "text{fill:var(--soft);font:12px system-ui,sans-serif}.axis{stroke:var(--line)}.legend{fill:var(--ink)}"
     ".title{fill:var(--ink);font:600 15px system-ui,sans-serif}.card{fill:var(--card)}";
 constexpr double kTitle = 34, kMargin = 8;

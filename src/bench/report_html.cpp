@@ -9,25 +9,30 @@ namespace {
 
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; --ink: #1c2733; --soft: #5b6b7b; --line: #d8dfe6; --page: #fbfcfd; --card: #fff;
-  --good: #1f7a4d; --bad: #b4442a; --link: #0b62a8; --theirs: #f3f0e6; }
+  --good: #1f7a4d; --bad: #b4442a; --link: #0b62a8; --theirs: #f3f0e6; --shade: #1c273340; }
 @media (prefers-color-scheme: dark) { :root { --ink: #e4e9ee; --soft: #9aa8b5; --line: #33404c; --page: #151b21;
-  --card: #1c242c; --good: #58c48d; --bad: #ef8a6d; --link: #7cbcf0; --theirs: #2a2a22; } }
+  --card: #1c242c; --good: #58c48d; --bad: #ef8a6d; --link: #7cbcf0; --theirs: #2a2a22; --shade: #000a; } }
 body { font: 15px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--page); margin: 0; }
-main { max-width: 1080px; margin: 0 auto; padding: 2rem 1.2rem 4rem; }
+main { max-width: 1240px; margin: 0 auto; padding: 2rem 1.2rem 4rem; }
 h1 { font-size: 1.7rem; margin: 0 0 .2rem; } h2 { margin: 3rem 0 .3rem; font-size: 1.35rem; }
 p { max-width: 75ch; } .soft { color: var(--soft); }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .1rem 1rem; margin: 1rem 0; }
 dt { color: var(--soft); } dd { margin: 0; }
 figure { margin: 1.4rem 0; padding: .9rem 1rem; background: var(--card); border: 1px solid var(--line);
   border-radius: 8px; overflow-x: auto; }
+/* A table that is wider than the page keeps its first column in view, and has a shadow where it goes on. */
+figure:has(table) { background: linear-gradient(to left, var(--card) 60%, transparent) right / 48px 100% no-repeat local,
+  linear-gradient(to left, var(--shade), transparent) right / 16px 100% no-repeat scroll, var(--card); }
+figure th:first-child:not(.group), figure td:first-child { position: sticky; left: -1rem; padding-left: 1rem; background: var(--card); }
 figcaption { font-weight: 600; margin-bottom: .5rem; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; width: 100%; }
-th, td { padding: .22rem .6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
+table { font-size: .88em; border-collapse: collapse; font-variant-numeric: tabular-nums; width: 100%; }
+th, td { padding: .22rem .38rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th:first-child, td:first-child { text-align: left; }
 th { font-weight: 600; color: var(--soft); } th.group { text-align: center; border-left: 1px solid var(--line); }
 ul.targets { list-style: none; padding: 0; } ul.targets li::before { display: inline-block; width: 1.4em; }
 li.reached::before { content: "\2713"; color: var(--good); } li.missed::before { content: "\2717"; color: var(--bad); }
 svg { width: 100%; height: auto; display: block; } svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
+@media (prefers-color-scheme: dark) { svg :is(polyline, circle, rect) { filter: brightness(1.35); } }
 svg .axis { stroke: var(--line); } svg .legend { fill: var(--ink); }
 li { margin: .25rem 0; } a { color: var(--link); } section { scroll-margin-top: 1rem; }
 th.theirs, td.theirs, tr.theirs td { background: var(--theirs); color: var(--soft); font-style: italic; }

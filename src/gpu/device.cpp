@@ -9,7 +9,6 @@
 #include <array>
 #include <cctype>
 #include <cstring>
-#include <optional>
 
 namespace eye {
 namespace {
@@ -19,21 +18,6 @@ constexpr const char* kNoDriver =
     "no Vulkan driver was found: install a driver for the graphics card, or mesa-vulkan-drivers for rendering on the "
     "CPU "
     "(VK_ICD_FILENAMES must name an existing file where it is set)";
-
-// What the renderer is written against. Descriptor indexing is not here: Mesa 22.3's lavapipe has none.
-using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
-                                    vk::PhysicalDeviceVulkan13Features>;
-
-Features wantedFeatures() {
-  Features features;
-  features.get<vk::PhysicalDeviceFeatures2>().features.setMultiDrawIndirect(true).setDrawIndirectFirstInstance(true);
-  features.get<vk::PhysicalDeviceVulkan12Features>().setScalarBlockLayout(true);
-  features.get<vk::PhysicalDeviceVulkan13Features>()
-      .setSynchronization2(true)
-      .setDynamicRendering(true)
-      .setMaintenance4(true);
-  return features;
-}
 
 std::string versionText(uint32_t version) {
   return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
@@ -103,44 +87,26 @@ Result<void> createInstance(const DeviceOptions& options, GpuDevice& gpu) {
   return {};
 }
 
-// The index of a queue family for graphics (and presentation), or nothing.
-std::optional<uint32_t> findQueueFamily(const vk::raii::Instance& instance, const vk::raii::PhysicalDevice& device,
-                                        bool present) {
-  const auto families = device.getQueueFamilyProperties();
-  for (uint32_t i = 0; i < families.size(); ++i) {
-    if (!(families[i].queueFlags & vk::QueueFlagBits::eGraphics)) continue;
-    if (present && glfwGetPhysicalDevicePresentationSupport(*instance, *device, i) == GLFW_FALSE) continue;
-    return i;
+DeviceFacts factsOf(const vk::raii::Instance& instance, const vk::raii::PhysicalDevice& device, bool present) {
+  DeviceFacts facts;
+  facts.properties = device.getProperties();
+  // Older ones do not know the structures that are asked.
+  if (facts.properties.apiVersion >= VK_API_VERSION_1_3) {
+    const DeviceFeatures has = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                                                   vk::PhysicalDeviceVulkan13Features>();
+    facts.features = has;
   }
-  return std::nullopt;
+  facts.depthFormat = device.getFormatProperties(vk::Format::eD32Sfloat).optimalTilingFeatures;
+  facts.queueFamilies = device.getQueueFamilyProperties();
+  if (!present) return facts;
+  facts.presents.emplace();
+  for (uint32_t i = 0; i < facts.queueFamilies.size(); ++i)
+    facts.presents->push_back(glfwGetPhysicalDevicePresentationSupport(*instance, *device, i) == GLFW_TRUE);
+  return facts;
 }
 
-// Empty where the device can run the renderer.
-std::string whatLacks(const vk::raii::Instance& instance, const vk::raii::PhysicalDevice& device, bool present) {
-  const vk::PhysicalDeviceProperties properties = device.getProperties();
-  if (properties.apiVersion < VK_API_VERSION_1_3)
-    return "Vulkan 1.3 (it has " + versionText(properties.apiVersion) + ")";
-  const auto has = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
-                                       vk::PhysicalDeviceVulkan13Features>();
-  std::string lacks;
-  const auto need = [&lacks](bool present_, const char* name) {
-    if (!present_) lacks += (lacks.empty() ? "" : ", ") + std::string(name);
-  };
-  need(has.get<vk::PhysicalDeviceFeatures2>().features.multiDrawIndirect, "multiDrawIndirect");
-  need(has.get<vk::PhysicalDeviceFeatures2>().features.drawIndirectFirstInstance, "drawIndirectFirstInstance");
-  need(has.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout, "scalarBlockLayout");
-  need(has.get<vk::PhysicalDeviceVulkan13Features>().synchronization2, "synchronization2");
-  need(has.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering, "dynamicRendering");
-  need(has.get<vk::PhysicalDeviceVulkan13Features>().maintenance4, "maintenance4");
-  const auto depth = device.getFormatProperties(vk::Format::eD32Sfloat).optimalTilingFeatures;
-  need(bool(depth & vk::FormatFeatureFlagBits::eDepthStencilAttachment), "a 32-bit float depth format");
-  need(findQueueFamily(instance, device, present).has_value(),
-       present ? "a queue that draws and presents" : "a graphics queue");
-  return lacks;
-}
-
-DeviceDescription describe(const vk::raii::Instance& instance, const vk::raii::PhysicalDevice& device, bool present) {
-  const vk::PhysicalDeviceProperties properties = device.getProperties();
+DeviceDescription describe(const vk::raii::PhysicalDevice& device, const vk::PhysicalDeviceProperties& properties,
+                           const DeviceTraits& traits) {
   DeviceDescription description;
   description.name = properties.deviceName.data();
   switch (properties.deviceType) {
@@ -167,8 +133,9 @@ DeviceDescription describe(const vk::raii::Instance& instance, const vk::raii::P
     const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
     description.driver = fmt::format("{} {}", driver.driverName.data(), driver.driverInfo.data());
   }
-  description.lacks = whatLacks(instance, device, present);
-  description.usable = description.lacks.empty();
+  description.lacks = traits.lacks;
+  description.usable = traits.lacks.empty();
+  if (description.usable) description.choices = choicesText(traits);
   return description;
 }
 
@@ -191,14 +158,18 @@ Result<void> choosePhysicalDevice(const DeviceOptions& options, GpuDevice& gpu) 
   int best = -1;
   std::string seen;
   for (vk::raii::PhysicalDevice& device : vk::raii::PhysicalDevices(gpu.instance)) {
-    DeviceDescription description = describe(gpu.instance, device, options.window);
+    const DeviceFacts facts = factsOf(gpu.instance, device, options.window);
+    DeviceTraits traits = chooseTraits(facts);
+    DeviceDescription description = describe(device, facts.properties, traits);
     seen += fmt::format("{}'{}'{}", seen.empty() ? "" : ", ", description.name,
                         description.usable ? "" : " (lacks " + description.lacks + ")");
     const bool named = lowerCase(description.name).find(lowerCase(options.name)) != std::string::npos;
-    const int score = rank(device.getProperties().deviceType);
+    const int score = rank(facts.properties.deviceType);
     if (!named || !description.usable || score <= best) continue;
     best = score;
     gpu.physical = std::move(device);
+    gpu.properties = facts.properties;
+    gpu.traits = std::move(traits);
     gpu.description = std::move(description);
   }
   if (seen.empty()) return fail(ErrorKind::notFound, kNoDriver);
@@ -210,22 +181,19 @@ Result<void> choosePhysicalDevice(const DeviceOptions& options, GpuDevice& gpu) 
 }
 
 void createLogicalDevice(const DeviceOptions& options, GpuDevice& gpu) {
-  gpu.properties = gpu.physical.getProperties();
   gpu.memory = gpu.physical.getMemoryProperties();
-  gpu.queueFamily = findQueueFamily(gpu.instance, gpu.physical, options.window).value();
-  gpu.timestampBits = gpu.physical.getQueueFamilyProperties()[gpu.queueFamily].timestampValidBits;
   const float priority = 1.0f;
-  const vk::DeviceQueueCreateInfo queue({}, gpu.queueFamily, 1, &priority);
+  const vk::DeviceQueueCreateInfo queue({}, gpu.traits.queueFamily, 1, &priority);
   std::vector<const char*> extensions;
   if (options.window) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  const Features features = wantedFeatures();
+  const DeviceFeatures features = featuresToEnable(gpu.traits);
   vk::DeviceCreateInfo info;
   info.setQueueCreateInfos(queue).setPEnabledExtensionNames(extensions);
   info.setPNext(&features.get<vk::PhysicalDeviceFeatures2>());
   gpu.device = vk::raii::Device(gpu.physical, info);
-  gpu.queue = vk::raii::Queue(gpu.device, gpu.queueFamily, 0);
+  gpu.queue = vk::raii::Queue(gpu.device, gpu.traits.queueFamily, 0);
   gpu.commandPool =
-      vk::raii::CommandPool(gpu.device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, gpu.queueFamily});
+      vk::raii::CommandPool(gpu.device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, gpu.traits.queueFamily});
 }
 
 }  // namespace
@@ -251,7 +219,8 @@ Result<std::vector<DeviceDescription>> listDevices() {
     if (auto made = createInstance({}, gpu); !made) return tl::unexpected(made.error());
     std::vector<DeviceDescription> all;
     for (const vk::raii::PhysicalDevice& device : vk::raii::PhysicalDevices(gpu.instance)) {
-      all.push_back(describe(gpu.instance, device, false));
+      const DeviceFacts facts = factsOf(gpu.instance, device, false);
+      all.push_back(describe(device, facts.properties, chooseTraits(facts)));
     }
     if (all.empty()) return fail(ErrorKind::notFound, kNoDriver);
     return all;

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "gpu/device_description.h"
+#include "gpu/device_traits.h"
 
 namespace eye {
 
@@ -27,11 +28,10 @@ struct GpuDevice {
   vk::raii::Device device{nullptr};
   vk::raii::Queue queue{nullptr};
   vk::raii::CommandPool commandPool{nullptr};
-  uint32_t queueFamily = 0;
-  vk::PhysicalDeviceProperties properties;
+  vk::PhysicalDeviceProperties properties;  // who it is; what it can is in the traits
+  DeviceTraits traits;
   vk::PhysicalDeviceMemoryProperties memory;
   DeviceDescription description;
-  uint32_t timestampBits = 0;         // 0: the queue has no timestamps
   std::atomic<uint64_t> messages{0};  // of the validation layer
 };
 

@@ -8,7 +8,8 @@ namespace eye {
 struct DeviceDescription {
   std::string name, type, driver, apiVersion;
   bool usable = false;
-  std::string lacks;  // what makes it unusable, in words
+  std::string lacks;    // what makes it unusable, in words
+  std::string choices;  // what is chosen for it, in words
 };
 
 }  // namespace eye

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+
+#include "base/user_folders.h"
 
 namespace eye {
 namespace {
@@ -52,17 +53,11 @@ std::optional<std::vector<uint8_t>> unpackPipelineCache(const std::string& file)
 }
 
 std::string pipelineCachePath(const GpuDevice& gpu) {
-  std::filesystem::path folder;
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0') {
-    folder = cache;
-  } else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
-    folder = std::filesystem::path(home) / ".cache";
-  } else {
-    return {};
-  }
+  const auto folder = userCacheFolder();
+  if (!folder) return {};
   std::string uuid;
   for (const uint8_t byte : gpu.properties.pipelineCacheUUID) uuid += fmt::format("{:02x}", byte);
-  return folder / "eyepoint" / ("pipelines-" + uuid + ".bin");
+  return *folder / ("pipelines-" + uuid + ".bin");
 }
 
 vk::raii::PipelineCache loadPipelineCache(const GpuDevice& gpu, const std::string& path) {

@@ -41,7 +41,7 @@ vk::PresentModeKHR choosePresentMode(const std::vector<vk::PresentModeKHR>& offe
 
 Swapchain::Swapchain(const GpuDevice& gpu, const Window& window, bool vsync)
     : window_(window), vsync_(vsync), surface_(createSurface(gpu, window)) {
-  if (gpu.physical.getSurfaceSupportKHR(gpu.queueFamily, *surface_) == VK_FALSE) {
+  if (gpu.physical.getSurfaceSupportKHR(gpu.traits.queueFamily, *surface_) == VK_FALSE) {
     throw vk::InitializationFailedError("the device cannot show pictures in this window");
   }
   format_ = chooseFormat(gpu.physical.getSurfaceFormatsKHR(*surface_));

@@ -3,9 +3,10 @@
 namespace eye {
 
 Timestamps::Timestamps(const GpuDevice& gpu) {
-  if (gpu.timestampBits == 0) return;
-  msPerTick_ = double(gpu.properties.limits.timestampPeriod) * 1e-6;
-  mask_ = gpu.timestampBits >= 64 ? ~uint64_t{0} : (uint64_t{1} << gpu.timestampBits) - 1;
+  const uint32_t bits = gpu.traits.timestampBits;
+  if (bits == 0) return;
+  msPerTick_ = gpu.traits.msPerTick;
+  mask_ = bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
   pool_ = vk::raii::QueryPool(gpu.device, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, kMaxMarks + 1));
 }
 

@@ -75,7 +75,7 @@ std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uin
 }
 
 Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize) {
-  const uint32_t maxLayers = gpu.properties.limits.maxImageArrayLayers;
+  const uint32_t maxLayers = gpu.traits.mostTextureLayers;
   uint64_t layerBytes = mipChainBytes(textureSize);
   // What a layer takes on the device is known when the image is made: the second round keeps to it.
   for (int round = 0; round < 2; ++round) {

@@ -38,13 +38,13 @@ CullLists::CullLists(const GpuDevice& gpu, bool pyramidOnHost) : pyramidOnHost_(
 }
 
 bool CullLists::fits(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx) {
-  const vk::PhysicalDeviceLimits& limits = gpu.properties.limits;
+  const DeviceTraits& traits = gpu.traits;
   const size_t candidates = clustersOf(draws);
   const size_t pixels = static_cast<size_t>(picturePx.x) * static_cast<size_t>(picturePx.y);
   const size_t texels = std::bit_ceil(std::max(pixels, pyramidLayout(mapPx).texels));
-  return texels * sizeof(float) <= limits.maxStorageBufferRange &&
-         std::bit_ceil(candidates) * sizeof(shader::DrawCommand) <= limits.maxStorageBufferRange &&
-         candidates <= size_t{limits.maxComputeWorkGroupCount[0]} * EYE_CULL_GROUP;
+  return texels * sizeof(float) <= traits.mostStorageBytes &&
+         std::bit_ceil(candidates) * sizeof(shader::DrawCommand) <= traits.mostStorageBytes &&
+         candidates <= size_t{traits.mostWorkGroups} * EYE_CULL_GROUP;
 }
 
 bool CullLists::reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx,

@@ -43,7 +43,7 @@ Overlay::Overlay(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, vk:
   info.Instance = *gpu.instance;
   info.PhysicalDevice = *gpu.physical;
   info.Device = *gpu.device;
-  info.QueueFamily = gpu.queueFamily;
+  info.QueueFamily = gpu.traits.queueFamily;
   info.Queue = *gpu.queue;
   info.PipelineCache = *cache;
   info.DescriptorPool = *pool_;

@@ -3,12 +3,13 @@
 
 namespace eye {
 
-// How terrain's textures are read. device: bilinear on a device that is a CPU, trilinear elsewhere.
+// How terrain's textures are read. device: as gpu/device_traits.h chooses; bilinear on a device that is a CPU.
 enum class TextureFilter {
   device,
-  nearest,    // one texel of the nearest mip level
-  bilinear,   // four texels of the nearest mip level
-  trilinear,  // four texels of each of two levels
+  nearest,      // one texel of the nearest mip level
+  bilinear,     // four texels of the nearest mip level
+  trilinear,    // four texels of each of two levels
+  anisotropic,  // several of these along a footprint that is longer than wide: ground seen at a flat angle
 };
 
 }  // namespace eye

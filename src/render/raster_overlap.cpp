@@ -15,7 +15,7 @@ constexpr uint32_t kFewestDraws = 8;
 }  // namespace
 
 RasterOverlap::RasterOverlap(const GpuDevice& gpu) {
-  if (gpu.properties.deviceType != vk::PhysicalDeviceType::eCpu) return;
+  if (!gpu.traits.binsBeforeRastering) return;
   stamps_ = {gpu.device, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, kMostStamps)};
 }
 

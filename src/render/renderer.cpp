@@ -71,14 +71,12 @@ vk::SampleCountFlagBits sampleCount(const RendererOptions& options) {
 }
 
 bool drawsSamples(const GpuDevice& gpu, vk::SampleCountFlagBits samples) {
-  const vk::PhysicalDeviceLimits& limits = gpu.properties.limits;
-  return static_cast<bool>(limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
-                           limits.sampledImageDepthSampleCounts & samples);
+  return static_cast<bool>(gpu.traits.sampleCounts & samples);
 }
 
 bool pyramidOnHost(const RendererOptions& options, const GpuDevice& gpu) {
   return options.depthPyramid == DepthPyramidBy::host ||
-         (options.depthPyramid == DepthPyramidBy::device && gpu.properties.deviceType == vk::PhysicalDeviceType::eCpu);
+         (options.depthPyramid == DepthPyramidBy::device && gpu.traits.reducesDepthOnHost);
 }
 
 }  // namespace
@@ -109,6 +107,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     if (!drawsSamples(device, sampleCount(options)))
       return fail(ErrorKind::unsupported, fmt::format("{} draws no pictures with {} samples a pixel: give --samples 1",
                                                       device.description.name, options.samples));
+    if (options.filter == TextureFilter::anisotropic && device.traits.mostAnisotropy <= 1)
+      return fail(ErrorKind::unsupported,
+                  fmt::format("{} has no anisotropic filter: give --sampler trilinear", device.description.name));
     auto pools = ChunkPools::create(device, options.gpuBudgetBytes, options.textureSize);
     if (!pools) return tl::unexpected(pools.error());
     impl->pools = std::move(*pools);

@@ -37,10 +37,11 @@ vk::raii::DescriptorSetLayout createSetLayout(const GpuDevice& gpu) {
 
 vk::raii::Sampler createSampler(const GpuDevice& gpu, TextureFilter filter) {
   const vk::Filter within = filter == TextureFilter::nearest ? vk::Filter::eNearest : vk::Filter::eLinear;
-  const bool blends = filter == TextureFilter::trilinear;
+  const bool blends = filter == TextureFilter::trilinear || filter == TextureFilter::anisotropic;
   vk::SamplerCreateInfo info;
   info.setMagFilter(within).setMinFilter(within).setMaxLod(VK_LOD_CLAMP_NONE);
   info.setMipmapMode(blends ? vk::SamplerMipmapMode::eLinear : vk::SamplerMipmapMode::eNearest);
+  if (filter == TextureFilter::anisotropic) info.setAnisotropyEnable(true).setMaxAnisotropy(gpu.traits.mostAnisotropy);
   info.setAddressModeU(vk::SamplerAddressMode::eClampToEdge).setAddressModeV(vk::SamplerAddressMode::eClampToEdge);
   return {gpu.device, info};
 }
@@ -98,41 +99,27 @@ PipelineSpec tintedSpec() {
   return spec;
 }
 
-PipelineSpec skySpec() {
+// Drawn where no terrain stands: the sky or, adding their light, sun and stars.
+PipelineSpec backdropSpec(std::span<const uint32_t> vertexSpirv, std::span<const uint32_t> fragmentSpirv, Blend blend) {
   PipelineSpec spec;
-  spec.vertexSpirv = k_sky_vert;
-  spec.fragmentSpirv = k_sky_frag;
+  spec.vertexSpirv = vertexSpirv;
+  spec.fragmentSpirv = fragmentSpirv;
   spec.depth = DepthUse::whereNothing;
+  spec.blend = blend;
   return spec;
 }
 
 PipelineSpec domeSpec() {
-  PipelineSpec spec;
-  spec.vertexSpirv = k_sky_dome_vert;
-  spec.fragmentSpirv = k_sky_dome_frag;
-  spec.depth = DepthUse::whereNothing;
+  PipelineSpec spec = backdropSpec(k_sky_dome_vert, k_sky_dome_frag, Blend::none);
   spec.isStrip = true;
   return spec;
 }
 
-PipelineSpec sunSpec() {
-  PipelineSpec spec;
-  spec.vertexSpirv = k_sun_vert;
-  spec.fragmentSpirv = k_sun_frag;
-  spec.depth = DepthUse::whereNothing;
-  spec.blend = Blend::add;
-  return spec;
-}
-
 PipelineSpec starSpec() {
-  PipelineSpec spec;
-  spec.vertexSpirv = k_star_vert;
-  spec.fragmentSpirv = k_star_frag;
+  PipelineSpec spec = backdropSpec(k_star_vert, k_star_frag, Blend::add);
   spec.bindings = {{0, sizeof(StarInstance), vk::VertexInputRate::eInstance}};
   spec.attributes = {{0, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(StarInstance, ndc)},
                      {1, 0, vk::Format::eR32G32B32A32Sfloat, offsetof(StarInstance, direction_eye)}};
-  spec.depth = DepthUse::whereNothing;
-  spec.blend = Blend::add;
   return spec;
 }
 
@@ -147,11 +134,11 @@ PipelineSpec cloudSpec() {
 
 }  // namespace
 
-// Between mip levels a CPU device takes the nearest, which saves it 4 to 7 % of a frame; others blend.
 TextureFilter filterOn(const GpuDevice& gpu, TextureFilter filter) {
   if (filter != TextureFilter::device) return filter;
-  const bool onCpu = gpu.properties.deviceType == vk::PhysicalDeviceType::eCpu;
-  return onCpu ? TextureFilter::bilinear : TextureFilter::trilinear;
+  return gpu.traits.drawsAnisotropic  ? TextureFilter::anisotropic
+         : gpu.traits.blendsMipLevels ? TextureFilter::trilinear
+                                      : TextureFilter::bilinear;
 }
 
 ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const SceneOptions& options) {
@@ -186,9 +173,9 @@ ScenePass::ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache,
     depthAtCentres_ = createPipeline(gpu, cache, terrain);
   }
   if (options.withTints) tinted_ = make(tintedSpec());
-  sky_ = make(skySpec());
+  sky_ = make(backdropSpec(k_sky_vert, k_sky_frag, Blend::none));
   domeSky_ = make(domeSpec());
-  sun_ = make(sunSpec());
+  sun_ = make(backdropSpec(k_sun_vert, k_sun_frag, Blend::add));
   star_ = make(starSpec());
   PipelineSpec cloud = cloudSpec();
   cloud.layout = *cloudLayout_;
@@ -291,7 +278,7 @@ void ScenePass::drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::Com
   commands.bindVertexBuffers(0, {pools.vertexBuffer(), *draws.buffer}, {0, 0});
   commands.bindIndexBuffer(pools.indexBuffer(), 0, vk::IndexType::eUint16);
   constexpr uint32_t kStride = sizeof(vk::DrawIndexedIndirectCommand);
-  const uint32_t most = gpu.properties.limits.maxDrawIndirectCount;
+  const uint32_t most = gpu.traits.mostDraws;
   for (uint32_t done = 0; done < count; done += std::min(most, count - done)) {
     commands.drawIndexedIndirect(*indirect.buffer, vk::DeviceSize{first + done} * kStride, std::min(most, count - done),
                                  kStride);

@@ -1,10 +1,8 @@
 #include "bench/small_database.h"
 
-#include <spdlog/spdlog.h>
 #include <catch2/catch.hpp>
 
-#include "bake/bake_job.h"
-#include "bake/raster_files.h"
+#include "bake/baked_ground.h"
 
 namespace eye {
 
@@ -15,22 +13,8 @@ double swellsAndRidgesM(double latDeg, double lonDeg) {
 }
 
 const std::string& smallDatabase() {
-  static const TestFolder folder;
-  static const std::string path = [] {
-    spdlog::set_level(spdlog::level::warn);
-    BakeJob job;
-    job.elevation = {writeHeights(folder.file("ground.tif"), postGrid(49, 20, 1.0 / 200, 121, 121), swellsAndRidgesM)};
-    job.out = folder.file("ground.eyt");
-    job.plan.errorM = 4;
-    job.plan.textureSize = 32;
-    BakeControl control;
-    control.jobs = 2;
-    const auto outcome = runBake(job, control);
-    INFO((outcome ? std::string() : outcome.error().message));
-    REQUIRE(outcome);
-    return job.out;
-  }();
-  return path;
+  static const BakedGround ground(postGrid(49, 20, 1.0 / 200, 121, 121), swellsAndRidgesM, 4);
+  return ground.database;
 }
 
 }  // namespace eye

@@ -1,14 +1,11 @@
 // Heights against the elevation that was baked, and lines of sight against heights along them.
 #include "paging/ground_query.h"
 
-#include <spdlog/spdlog.h>
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "bake/bake_job.h"
-#include "bake/raster_files.h"
+#include "bake/baked_ground.h"
 #include "terrain/database.h"
 
 namespace eye {
@@ -31,22 +28,8 @@ double bilinearM(double latDeg, double lonDeg) {
 }
 
 const std::string& hills() {
-  static const TestFolder folder;
-  static const std::string path = [] {
-    spdlog::set_level(spdlog::level::warn);
-    BakeJob job;
-    job.elevation = {writeHeights(folder.file("hills.tif"), postGrid(49, 20, 1.0 / kPostsPerDeg, 101, 101), hillsM)};
-    job.out = folder.file("hills.eyt");
-    job.plan.errorM = kErrorM;
-    job.plan.textureSize = 16;
-    BakeControl control;
-    control.jobs = 2;
-    const auto outcome = runBake(job, control);
-    INFO((outcome ? std::string() : outcome.error().message));
-    REQUIRE(outcome);
-    return job.out;
-  }();
-  return path;
+  static const BakedGround ground(postGrid(49, 20, 1.0 / kPostsPerDeg, 101, 101), hillsM, kErrorM, 16);
+  return ground.database;
 }
 
 TEST_CASE("ground query: heights are the source's within the bake's error, at every point") {

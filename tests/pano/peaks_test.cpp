@@ -3,12 +3,10 @@
 #include <cmath>
 #include <map>
 
-#include <spdlog/spdlog.h>
 #include <GeographicLib/Geocentric.hpp>
 #include <catch2/catch.hpp>
 
-#include "bake/bake_job.h"
-#include "bake/raster_files.h"
+#include "bake/baked_ground.h"
 #include "pano/line_of_sight.h"
 #include "pano/peaks.h"
 #include "render/renderer.h"
@@ -49,20 +47,8 @@ double heightM(double latDeg, double lonDeg) {
 }
 
 const std::string& database() {
-  static const TestFolder folder;
-  static const std::string path = [] {
-    spdlog::set_level(spdlog::level::warn);
-    BakeJob job;
-    job.elevation = {writeHeights(folder.file("ridge.tif"), postGrid(45.9, 7.85, 1.0 / 1200, 301, 361), heightM)};
-    job.out = folder.file("ridge.eyt");
-    job.plan.errorM = 1;
-    job.plan.textureSize = 32;
-    BakeControl control;
-    control.jobs = 2;
-    REQUIRE(runBake(job, control));
-    return job.out;
-  }();
-  return path;
+  static const BakedGround ground(postGrid(45.9, 7.85, 1.0 / 1200, 301, 361), heightM, 1);
+  return ground.database;
 }
 
 PanoramaOptions optionsFor(DepthKind depth) {

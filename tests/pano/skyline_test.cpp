@@ -6,12 +6,10 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <catch2/catch.hpp>
 
-#include "bake/bake_job.h"
-#include "bake/raster_files.h"
+#include "bake/baked_ground.h"
 #include "pano/render_panorama.h"
 #include "render/renderer.h"
 
@@ -42,23 +40,10 @@ constexpr std::array<Standpoint, 3> kStandpoints{
     {{"ridge", 44.31, 10.42, 40}, {"valley", 44.22, 10.55, 15}, {"sea", 43.93, 10.45, 60}}};
 
 const std::string& database() {
-  static const TestFolder folder;
-  static const std::string path = [] {
-    spdlog::set_level(spdlog::level::warn);
-    BakeJob job;
-    const auto rows = static_cast<int>(std::lround(kHighDeg / kStepDeg)) + 1,
-               columns = static_cast<int>(std::lround(kWideDeg / kStepDeg)) + 1;
-    job.elevation = {
-        writeHeights(folder.file("island.tif"), postGrid(kSouthDeg, kWestDeg, kStepDeg, rows, columns), islandM)};
-    job.out = folder.file("island.eyt");
-    job.plan.errorM = 0.5;
-    job.plan.textureSize = 32;
-    BakeControl control;
-    control.jobs = 2;
-    REQUIRE(runBake(job, control));
-    return job.out;
-  }();
-  return path;
+  const auto rows = static_cast<int>(std::lround(kHighDeg / kStepDeg)) + 1,
+             columns = static_cast<int>(std::lround(kWideDeg / kStepDeg)) + 1;
+  static const BakedGround ground(postGrid(kSouthDeg, kWestDeg, kStepDeg, rows, columns), islandM, 0.5);
+  return ground.database;
 }
 
 // The highest elevation angle along an azimuth, for each refraction; degrees.

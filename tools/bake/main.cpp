@@ -13,6 +13,7 @@
 #include "bake/merge.h"
 #include "bake/shard.h"
 #include "base/command_line.h"
+#include "base/user_folders.h"
 #include "base/version.h"
 #include "inspect.h"
 #include "progress.h"
@@ -39,7 +40,7 @@ constexpr const char* kAbout =
     "  eyepoint-bake merge alps.eyt part*.eyt                       joins them\n"
     "  eyepoint-bake info alps.eyt\n"
     "  eyepoint-bake verify alps.eyt\n"
-    "  eyepoint-bake demo --out demo.eyt";
+    "  eyepoint-bake demo           the embedded terrain, where eyepoint looks for it";
 
 struct Arguments {
   BakeJob job;
@@ -155,6 +156,12 @@ Result<void> runJob(const Arguments& arguments) {
 }
 
 Result<void> runDemo(Arguments& arguments) {
+  std::string& out = arguments.job.out;
+  if (out.empty()) {
+    out = defaultTerrainPath();
+    std::error_code failed;  // the bake says it
+    std::filesystem::create_directories(std::filesystem::path(out).parent_path(), failed);
+  }
   auto sources = makeDemoSources();
   if (!sources) return tl::unexpected(sources.error());
   arguments.job.elevation = std::move(sources->elevation);
@@ -194,7 +201,8 @@ int main(int argc, char** argv) {
   CLI::App* merge = app.add_subcommand("merge", "Join the shards of one bake");
   merge->add_option("OUT", arguments.file, "The database to write; it must not exist")->required();
   merge->add_option("IN", arguments.shards, "Every shard, see --shard")->required();
-  CLI::App* demo = app.add_subcommand("demo", "Bake the embedded demo terrain");
+  CLI::App* demo =
+      app.add_subcommand("demo", "Bake the embedded demo terrain; without --out, where eyepoint looks for it");
   addCommonOptions(*demo, arguments);
   app.require_subcommand(0, 1);
   try {
@@ -205,7 +213,7 @@ int main(int argc, char** argv) {
     if (bakes && !demo->parsed() && arguments.job.elevation.empty()) {
       throw CLI::RequiredError("--elevation SRC... (see --help for examples)");
     }
-    if (bakes && arguments.job.out.empty()) throw CLI::RequiredError("--out FILE.eyt");
+    if (bakes && !demo->parsed() && arguments.job.out.empty()) throw CLI::RequiredError("--out FILE.eyt");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     fmt::print(stderr, "eyepoint-bake: {}\n", error.what());
