@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "app/options.h"
 #include "control/fuzzy_selector.h"
@@ -26,17 +27,21 @@ class DepthMapControl {
 
   // Before a frame that is drawn: the size of its depth map, nothing for none.
   std::optional<glm::ivec2> choose(const Pose& pose, const TerrainCache& cache, const Selection& selection);
-  // After it.
-  void learn(const FrameOutput& output);
+  // After it. `pagingMs`: CPU time that the paging thread took meanwhile, which the choice does not change.
+  void learn(const FrameOutput& output, double pagingMs);
   // The selector's; nothing where the options decide.
   const std::optional<Decision>& decision() const { return decision_; }
 
  private:
+  void costOnCpu(double frameMs);
+
   CullingMode culling_ = CullingMode::dynamic;
   DepthMapMode mode_ = DepthMapMode::automatic;
   glm::ivec2 fixedPx_{0, 0};
   FuzzySelector selector_;
   SelectorInput measured_;  // of the last frame
+  DepthMapChoice passSize_ = DepthMapChoice::off;
+  std::vector<double> passMs_;  // what culling took in the newest frames of one size, on a device that is a CPU
   std::optional<Decision> decision_;
 };
 

@@ -299,12 +299,14 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
         if (debug.any()) drawDebugLegend(debug, frozen, record.depthMapPx, view_.widthPx);
       };
     }
+    const double pagingBeganMs = pager_->threadCpuMs();
     const Result<FrameOutput> output = renderer_->drawFrame(input);
+    const double pagingMs = pager_->threadCpuMs() - pagingBeganMs;
     if (!output) return tl::unexpected(output.error());
     output_ = *output;
     record.clusters = output_.clusters;
     record.depthMapPx = output_.depthMapPx;
-    if (!frozen) depthMap_.learn(output_);
+    if (!frozen) depthMap_.learn(output_, pagingMs);
     endedNs = output_.completedNs;
     drawn_ = Drawn{.view = view_,
                    .lighting = lighting,

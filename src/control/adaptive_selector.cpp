@@ -97,13 +97,16 @@ std::optional<DepthMapChoice> AdaptiveSelector::dueTrial(double sum) {
   return best;
 }
 
-// Off, the size below, the size above, in turn. Off first: it is what tells most about whether a new size pays.
+// Off, the size below, the size above, in turn, as far as there are such. Off first: it is what tells most about whether
+// a new size pays.
 DepthMapChoice AdaptiveSelector::nextAlternative() {
   const size_t index = sizeIndex(held_);
+  if (turn_ == kSmallersTurn && index == 0) turn_ = kLargersTurn;
+  if (turn_ == kLargersTurn && index + 1 == kDepthMapSizes) turn_ = kOffsTurn;
   const int turn = turn_;
   turn_ = (turn_ + 1) % 3;
-  if (turn == kSmallersTurn && index > 0) return kDepthMaps[index - 1];
-  if (turn == kLargersTurn && index + 1 < kDepthMapSizes) return kDepthMaps[index + 1];
+  if (turn == kSmallersTurn) return kDepthMaps[index - 1];
+  if (turn == kLargersTurn) return kDepthMaps[index + 1];
   return DepthMapChoice::off;
 }
 

@@ -38,8 +38,8 @@ struct AdaptiveRules {
   double triangleCostMaxNs = 300;
   double triangleCostTrust = 5000;  // occluded triangles that one measurement must have to
                                     // weigh as much as triangleCostNs
-  std::array<double, kDepthMapSizes> passCostMs{0.3, 0.35, 0.5, 0.65};  // smallest first
-  std::array<double, kDepthMapSizes> shareOfLargest{0.85, 0.9, 0.97, 1};
+  std::array<double, kDepthMapSizes> passCostMs{0.5, 0.55, 0.7, 0.9};  // smallest first
+  std::array<double, kDepthMapSizes> shareOfLargest{0.97, 0.985, 0.995, 1};
 
   // When to change and when to try, in frames and in shares of a frame's cost.
   double hysteresis = 0.005;

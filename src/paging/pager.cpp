@@ -330,6 +330,10 @@ double Pager::coarsening() const {
   return impl_->coarsening.factor();
 }
 
+double Pager::threadCpuMs() const {
+  return impl_->thread.cpuMs();
+}
+
 PagingCounts Pager::counts() const {
   PagingCounts counts = impl_->counts;
   const Residency::Counts& residency = impl_->residency.counts();

@@ -51,6 +51,7 @@ class Pager {
   double coarsening() const;
   PagingCounts counts() const;
   PagingPace pace() const;
+  double threadCpuMs() const;  // of reading and decoding, so far
 
  private:
   struct Impl;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "telemetry/cpu_time.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -72,6 +73,10 @@ void PagingThread::waitForResult() {
 uint64_t PagingThread::resultBytes() const {
   const std::lock_guard lock(mutex_);
   return resultBytes_;
+}
+
+double PagingThread::cpuMs() {
+  return threadCpuMs(thread_.native_handle());
 }
 
 void PagingThread::forget(const TileKey& parent) {

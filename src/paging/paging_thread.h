@@ -37,6 +37,7 @@ class PagingThread {
   // Until there is a result to take or one waits for room; at once where nothing is under way.
   void waitForResult();
   uint64_t resultBytes() const;
+  double cpuMs();  // that the thread has taken so far
 
  private:
   void run();

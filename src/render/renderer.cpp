@@ -15,6 +15,7 @@
 #include "render/raster_overlap.h"
 #include "render/scene_pass.h"
 #include "render/warm_up.h"
+#include "telemetry/cpu_time.h"
 #include "telemetry/trace.h"
 
 namespace eye {
@@ -194,6 +195,7 @@ Result<bool> Renderer::awaitDisplay() {
 Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
   try {
     Impl& impl = *impl_;
+    const double cpuBeganMs = processCpuMs();
     FrameInput input = asked;
     impl.resizeTargets(input.view.widthPx, input.view.heightPx);
     impl.lists->reserve(*impl.gpu, input.draws.size());
@@ -215,6 +217,7 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
     impl.drawn = true;
 
     FrameOutput output;
+    if (impl.gpu->traits.isCpu) output.cpuMs = processCpuMs() - cpuBeganMs;
     output.widthPx = impl.targets.widthPx;
     output.heightPx = impl.targets.heightPx;
     output.triangles = counts.surfaceTriangles + counts.skirtTriangles;

@@ -99,6 +99,9 @@ struct PassTime {
 // Valid until the next drawFrame.
 struct FrameOutput {
   double gpuMs = 0;
+  // Of the whole process while the frame was drawn, where the device is a CPU: what drawing costs, whatever else keeps
+  // the cores busy. Else 0.
+  double cpuMs = 0;
   std::vector<PassTime> passes;
   uint64_t triangles = 0, vertices = 0, draws = 0;  // submitted; vertices: of the chunks drawn
   CullCounts clusters;                              // all 0 without a depth map

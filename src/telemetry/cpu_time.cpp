@@ -21,4 +21,9 @@ double threadCpuMs() {
   return clockMs(CLOCK_THREAD_CPUTIME_ID);
 }
 
+double threadCpuMs(pthread_t thread) {
+  clockid_t clock = 0;
+  return pthread_getcpuclockid(thread, &clock) == 0 ? clockMs(clock) : 0;
+}
+
 }  // namespace eye

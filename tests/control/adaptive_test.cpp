@@ -129,7 +129,14 @@ TEST_CASE("descending into mountains it tries at once, not when its interval has
   CHECK(std::count(first - 600, first, DepthMapChoice::off) >= 590);
   const auto on = std::find_if(first, result.choices.end(), [](DepthMapChoice c) { return c != DepthMapChoice::off; });
   CHECK(on - first <= 60);
-  CHECK(std::count(on, result.choices.end(), DepthMapChoice::off) <= 10);
+  // From then on it is off in trials alone.
+  const AdaptiveRules rules;
+  int inRow = 0;
+  for (auto choice = on; choice != result.choices.end(); ++choice) {
+    inRow = *choice == DepthMapChoice::off ? inRow + 1 : 0;
+    CHECK(inRow <= rules.settleFrames + rules.trialFrames);
+  }
+  CHECK(std::count(on, result.choices.end(), DepthMapChoice::off) < 600 * 3 / 100);
 }
 
 TEST_CASE("the same flight gives the same choices") {
