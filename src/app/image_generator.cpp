@@ -16,7 +16,6 @@
 namespace eye {
 namespace {
 
-constexpr double kDefaultVisibilityM = 60000;
 constexpr double kTimeOfDayH = 9;
 constexpr double kFrameBudgetMs = 1000.0 / 60;
 
@@ -36,6 +35,10 @@ Air airWithCloud(double baseM, double coverage, double visibilityM) {
   air.layers[1] = {kVisibilityM, baseM, topM, kTransitionM, kTransitionM};
   air.clouds[0] = {baseM, topM, kTransitionM, kTransitionM, coverage};
   return air;
+}
+
+bool isSilent(const SourceSample& host, int64_t nowNs) {
+  return host.arrivedNs > 0 && nowNs - host.arrivedNs > host.carryOnNs;
 }
 
 bool operator==(const View& a, const View& b) {
@@ -181,7 +184,7 @@ Lighting ImageGenerator::currentLighting(const SourceSample& host) const {
                                                                          pose_.position.lonDeg, date);
   lighting.sunDirectionEcef = sunDirectionEcef(julianDay);
   lighting.siderealRad = siderealRad(julianDay);
-  lighting.visibilityM = options_.visibilityM.value_or(host.visibilityM.value_or(kDefaultVisibilityM));
+  lighting.visibilityM = options_.visibilityM.value_or(host.visibilityM.value_or(kClearVisibilityM));
   lighting.clouds = host.clouds;
   if (options_.cloudBaseM) {
     const Air air = airWithCloud(*options_.cloudBaseM, options_.cloudCover, lighting.visibilityM);
@@ -249,10 +252,10 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   if (host.valid) hostPose_ = host.pose;
   finished_ = host.finished;
   const double nowS = sources_.anyLive() ? static_cast<double>(beganNs) * 1e-9 : timeS;
-  // Until a host has said a place the eye waits over the terrain's middle, and afterwards where it was shown last.
+  // Until a host has said a place the eye waits over the terrain's middle, and without one where it was told last.
   const bool heard = host.valid || !sources_.anyLive();
   if (heard) tracker_.observe(host, hostPose_, nowS);
-  if (heard || number_ == 0) eye_ = heard ? tracker_.eye() : DisplayedEye{.pose = hostPose_};
+  eye_ = heard ? tracker_.eye() : DisplayedEye{.pose = hostPose_, .silent = isSilent(host, beganNs)};
   const DisplayedEye& eye = eye_;
   pose_ = channelPose(eye.pose, options_);
   view_ = currentView(pose_, host.edges);

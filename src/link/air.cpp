@@ -25,14 +25,16 @@ double shareOf(const AirLayer& layer, double altM) {
 // What adds up along a ray is the inverse of visibility, the extinction: transitions are linear in it, and the thickest
 // of all counts.
 std::optional<double> visibilityAt(const Air& air, double altM) {
-  const double clear = air.visibilityM ? 1 / std::max(*air.visibilityM, kMinVisibilityM) : 0;
+  const double clear = 1 / std::max(air.visibilityM.value_or(kClearVisibilityM), kMinVisibilityM);
   double thickest = clear;
+  bool any = air.visibilityM.has_value();
   for (const AirLayer& layer : air.layers) {
     if (layer.visibilityM <= 0) continue;
+    any = true;
     const double inside = 1 / std::max(layer.visibilityM, kMinVisibilityM);
     thickest = std::max(thickest, clear + (inside - clear) * shareOf(layer, altM));
   }
-  if (thickest <= 0) return std::nullopt;
+  if (!any) return std::nullopt;
   return std::clamp(1 / thickest, kMinVisibilityM, kMaxVisibilityM);
 }
 

@@ -21,6 +21,9 @@ struct Air {
   CloudLayers clouds;  // as they are seen from outside
 };
 
+// Where nothing is told.
+inline constexpr double kClearVisibilityM = 60'000;
+
 // Meteorological visibility around an eye at this altitude; nothing where nothing is told. Within the limits of
 // pose_limits.h.
 std::optional<double> visibilityAt(const Air& air, double altM);

@@ -1,4 +1,6 @@
 // A session's questions about the ground: which are due, and where their points are.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "link/cigi_session.h"
@@ -19,11 +21,14 @@ bool isSameRequest(const GroundRequest& a, const GroundRequest& b) {
 
 }  // namespace
 
-void Session::ask(const GroundRequest& request, const Stamp& stamp) {
+void Session::ask(const GroundRequest& request, const Stamp& stamp, const std::string& name) {
   std::erase_if(repeating_, [&](const Repeating& r) { return isSameRequest(r.request, request); });
   const uint8_t everyFrames = std::visit([](const auto& r) { return r.everyFrames; }, request);
   if (everyFrames > 0 && repeating_.size() < kMaxRepeating)
     repeating_.push_back({request, everyFrames, stamp.hostFrame});
+  else if (everyFrames > 0)
+    remark(name, Remark::tooManyRepeating,
+           fmt::format("more than {} requests have an update period: those beyond are answered once", kMaxRepeating));
   if (questions_.size() < kMaxQuestions) questions_.push_back(resolved(request, stamp.hostFrame, stamp.atNs));
 }
 

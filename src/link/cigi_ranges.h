@@ -16,7 +16,7 @@ inline constexpr Range kElevation{"elevation", -90, 90};
 inline constexpr Range kDirection{"wind direction", -360, 360};
 
 inline constexpr Range kEyeOffset{"offset", -1e6, 1e6};
-inline constexpr Range kNear{"near plane", 1e-3, 1e6};
+inline constexpr Range kNear{"near plane", 1e-3, 1e3};  // as --near
 inline constexpr Range kFar{"far plane", 1e-3, 1e9};
 inline constexpr Range kHalfAngle{"half-angle", -89.9, 89.9};  // as geo/view.h has it
 inline constexpr Range kEdgeM{"half-width", -1e6, 1e6};

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace eye::cigi {
 namespace {
 
@@ -46,7 +48,11 @@ Taken Receiver::take(const Message& message, const Peer& sender, int64_t nowNs) 
   const Moment moment =
       control.ticks ? clock_.take(int64_t{*control.ticks} * kTickNs, nowNs) : Moment{nowNs, false, false};
   Taken taken;
-  if (session_.take(message, moment.atNs, name_)) taken.moment = moment;
+  if (session_.take(message, moment.atNs, name_, nowNs)) taken.moment = moment;
+  if (std::exchange(resets_, session_.resets()) != session_.resets()) {
+    desk_.forget();
+    replies_.forget();
+  }
   if (message.rejected > 0) taken.complaint = message.firstRejection;
   replies_.heard(sender, message.format, session_.control(), nowNs);
   auto questions = session_.takeQuestions();

@@ -42,6 +42,7 @@ class Receiver : public ListeningReceiver {
   const std::string name_;
   const bool silent_, answers_;
   Session session_;
+  uint64_t resets_ = 0;  // of the session, seen
   HostClock clock_;
   Replies replies_;
   GroundDesk desk_;

@@ -34,6 +34,11 @@ bool Replies::answer(const Packet& packet) {
   return true;
 }
 
+void Replies::forget() {
+  const std::lock_guard lock(mutex_);
+  host_.reset();
+}
+
 int8_t Replies::databaseStatus(const FrameReport& report) {
   if (wantedDatabase_ == 0) return databaseNumber_.value_or(0);
   if (databaseNumber_ && wantedDatabase_ != *databaseNumber_) return kNotAvailable;

@@ -25,6 +25,8 @@ class Replies {
   void heard(const Peer& host, const Format& format, const IgControl& control, int64_t nowNs);
   // False when the answer had no room, and is dropped.
   bool answer(const Packet& packet);
+  // Link thread: the next message is another host's, or of another run of it.
+  void forget();
 
   struct Reply {
     Peer receiver;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "geo/sun.h"
 #include "link/pose_limits.h"
 
@@ -11,17 +13,12 @@ namespace {
 
 // More frames than this missing at once is a host that has begun anew.
 constexpr uint32_t kMaxGap = 10'000;
-// A network that holds a datagram back for longer than this many frames has lost it; a step back by more is a host
-// that begins anew.
+// A network that holds a datagram back for longer than this, in frames and in time, has lost it; a step back by more is
+// a host that begins anew.
 constexpr uint32_t kLateFrames = 100;
+constexpr int64_t kLateNs = 1'000'000'000;
 // So many frames behind one another that are all older than the newest are no overtaken ones: the host counts anew.
 constexpr int kBegunAnew = 10;
-
-// `frame` was sent before `newest` and overtaken, or is sent again.
-bool isLate(uint32_t frame, uint32_t newest) {
-  const uint32_t behind = newest - frame;
-  return behind > 0 && behind <= kLateFrames;
-}
 
 // Of a message that was overtaken: what is asked once changes nothing.
 bool isAskedOnce(const Packet& packet) {
@@ -62,24 +59,40 @@ void Session::reset() {
   lateRun_ = 0;
   control_ = {};
   seen_.fill(std::nullopt);
+  ++resets_;
+}
+
+// Sent before the newest and overtaken, or sent again.
+bool Session::isLate(uint32_t hostFrame, int64_t arrivedNs) const {
+  const uint32_t behind = control_.hostFrame - hostFrame;
+  return started_ && behind > 0 && behind <= kLateFrames && arrivedNs - arrivedNs_ <= kLateNs;
+}
+
+// Of a host that has stopped and counts from its beginning: what its former run said is not what this one means.
+bool Session::beginsAnew(uint32_t hostFrame, int64_t arrivedNs) {
+  if (!started_) return false;
+  if (!isLate(hostFrame, arrivedNs)) {
+    lateRun_ = 0;
+    return static_cast<int32_t>(hostFrame - control_.hostFrame) < 0;
+  }
+  lateRun_ = lateRun_ > 0 && hostFrame == newestLate_ + 1 ? lateRun_ + 1 : 1;
+  newestLate_ = hostFrame;
+  return lateRun_ >= kBegunAnew;
 }
 
 // False when the frame was overtaken.
-bool Session::header(const IgControl& control, const std::string& name) {
-  if (started_ && isLate(control.hostFrame, control_.hostFrame)) {
-    lateRun_ = lateRun_ > 0 && control.hostFrame == newestLate_ + 1 ? lateRun_ + 1 : 1;
-    newestLate_ = control.hostFrame;
-    if (lateRun_ >= kBegunAnew) reset();
-  } else {
-    lateRun_ = 0;
+bool Session::header(const IgControl& control, const std::string& name, int64_t arrivedNs) {
+  if (beginsAnew(control.hostFrame, arrivedNs)) {
+    spdlog::info("{}: the host begins anew, with frame {} after {}", name, control.hostFrame, control_.hostFrame);
+    reset();
   }
-  const uint32_t gap = control.hostFrame - control_.hostFrame;
-  if (started_ && isLate(control.hostFrame, control_.hostFrame)) {
+  if (isLate(control.hostFrame, arrivedNs)) {
     // Overtaken, not lost; unless it has come before.
     if (lostFrames_ > 0 && seen_[control.hostFrame % seen_.size()] != control.hostFrame) --lostFrames_;
     seen_[control.hostFrame % seen_.size()] = control.hostFrame;
     return false;
   }
+  const uint32_t gap = control.hostFrame - control_.hostFrame;
   if (started_ && gap > 1 && gap <= kMaxGap) lostFrames_ += gap - 1;
   const bool wasOperating = control_.mode != IgMode::standby;
   if (control.mode == IgMode::standby) {
@@ -91,16 +104,17 @@ bool Session::header(const IgControl& control, const std::string& name) {
     remark(name, Remark::standby, "the host keeps the image generator in standby: it is obeyed from operate on");
   }
   control_ = control;
+  arrivedNs_ = arrivedNs;
   seen_[control.hostFrame % seen_.size()] = control.hostFrame;
   started_ = true;
   return true;
 }
 
-bool Session::take(const Message& message, int64_t atNs, const std::string& name) {
+bool Session::take(const Message& message, int64_t atNs, const std::string& name, std::optional<int64_t> arrivedNs) {
   const auto* control = message.packets.empty() ? nullptr : std::get_if<IgControl>(&message.packets.front());
   if (control == nullptr) return false;  // without a header that is believed, nothing says of which frame it is
   const bool isNewFrame = !started_ || control->hostFrame != control_.hostFrame;
-  const bool isInOrder = header(*control, name);
+  const bool isInOrder = header(*control, name, arrivedNs.value_or(atNs));
   const bool isStandby = control_.mode == IgMode::standby;
   const Stamp stamp{control->hostFrame, isInOrder ? atNs : atNs_};
   for (const Packet& p : message.packets)
@@ -108,11 +122,27 @@ bool Session::take(const Message& message, int64_t atNs, const std::string& name
   if (!isInOrder) return false;
   atNs_ = atNs;
   if (isStandby) return true;
-  if (isNewFrame) repeatQuestions(atNs);
+  if (isNewFrame) {
+    repeatQuestions(atNs);
+    lookForEye(name);
+  }
   if (entities_.turnedAway() > 0)
     remark(name, Remark::tooMany,
            fmt::format("the host has more than {} entities; those beyond are not kept", kMaxEntities));
   return true;
+}
+
+// A host that never says where the view's entity is flies another one, or forgets its View Control.
+void Session::lookForEye(const std::string& name) {
+  constexpr int kPatienceFrames = 60;
+  EyeChain chain;
+  const bool isPlaced = entities_.addChain(eyeEntityId_, control_.smoothing, control_.hostFrame, chain);
+  framesWithoutEye_ = isPlaced ? 0 : std::min(framesWithoutEye_ + 1, kPatienceFrames);
+  if (framesWithoutEye_ == kPatienceFrames)
+    remark(name, Remark::noEye,
+           fmt::format("view {} is at entity {}, of whose place the host has said nothing in {} frames: it flies "
+                       "another entity, or has not said View Control",
+                       viewId_, eyeEntityId_, kPatienceFrames));
 }
 
 void Session::packet(const Packet& packet, const Stamp& stamp, const std::string& name) {
@@ -127,12 +157,11 @@ void Session::packet(const Packet& packet, const Stamp& stamp, const std::string
   if (const auto* definition = std::get_if<ViewDefinition>(&packet)) take(*definition, name);
   if (const auto* sphere = std::get_if<CelestialSphere>(&packet)) take(*sphere, stamp.atNs);
   if (const auto* atmosphere = std::get_if<Atmosphere>(&packet))
-    air_.visibilityM =
-        atmosphere->visibilityM >= kMinVisibilityM ? std::optional(atmosphere->visibilityM) : std::nullopt;
+    air_.visibilityM = atmosphere->visibilityM > 0 ? std::optional(atmosphere->visibilityM) : std::nullopt;
   if (const auto* weather = std::get_if<Weather>(&packet)) take(*weather);
-  if (const auto* height = std::get_if<HeightRequest>(&packet)) ask(*height, stamp);
-  if (const auto* segment = std::get_if<SightSegmentRequest>(&packet)) ask(*segment, stamp);
-  if (const auto* vector = std::get_if<SightVectorRequest>(&packet)) ask(*vector, stamp);
+  if (const auto* height = std::get_if<HeightRequest>(&packet)) ask(*height, stamp, name);
+  if (const auto* segment = std::get_if<SightSegmentRequest>(&packet)) ask(*segment, stamp, name);
+  if (const auto* vector = std::get_if<SightVectorRequest>(&packet)) ask(*vector, stamp, name);
 }
 
 void Session::take(const ViewControl& control) {
@@ -157,7 +186,7 @@ void Session::take(const ViewDefinition& definition, const std::string& name) {
   edges_.mirrorsAcross = definition.mirror == Mirror::horizontal || definition.mirror == Mirror::both;
   edges_.mirrorsUpright = definition.mirror == Mirror::vertical || definition.mirror == Mirror::both;
   if (definition.orthographic) {
-    remark(name, Remark::orthographic, "an orthographic view is not drawn; the channel keeps its own frustum");
+    remark(name, Remark::orthographic, "an orthographic view is not drawn; the channel keeps the frustum that it has");
     return;
   }
   const auto update = [](std::optional<double>& value, const std::optional<double>& told) {
@@ -168,6 +197,15 @@ void Session::take(const ViewDefinition& definition, const std::string& name) {
   update(edges_.bottomDeg, definition.bottomDegOrM);
   update(edges_.topDeg, definition.topDegOrM);
   update(edges_.nearM, definition.nearM);
+  const bool isCrossed = (edges_.leftDeg && edges_.rightDeg && *edges_.leftDeg >= *edges_.rightDeg) ||
+                         (edges_.bottomDeg && edges_.topDeg && *edges_.bottomDeg >= *edges_.topDeg);
+  if (isCrossed)
+    remark(
+        name, Remark::crossedEdges,
+        fmt::format("the host's view has edges that leave no picture (left {}, right {}, bottom {}, top {} degrees): "
+                    "the channel keeps its own there. Left and bottom are negative in a symmetric view",
+                    edges_.leftDeg.value_or(0), edges_.rightDeg.value_or(0), edges_.bottomDeg.value_or(0),
+                    edges_.topDeg.value_or(0)));
 }
 
 void Session::take(const CelestialSphere& sphere, int64_t atNs) {

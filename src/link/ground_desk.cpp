@@ -2,13 +2,15 @@
 
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 #include "telemetry/trace.h"
 
 namespace eye::cigi {
 namespace {
 
-// A second's worth of a host that asks seventeen questions a frame.
-constexpr size_t kMaxWaiting = 2 * cigi::kMaxPackets;
+// As many as answers may wait for a frame (cigi_replies.h): some four thousand.
+constexpr size_t kMaxWaiting = kMaxAnswers;
 
 }  // namespace
 
@@ -26,13 +28,28 @@ void GroundDesk::ask(std::vector<GroundQuestion> questions) {
     for (const GroundQuestion& question : questions) replies_.answer(answerTo(question, nullptr));
     return;
   }
+  size_t dropped = 0;
   {
     const std::lock_guard lock(mutex_);
-    for (GroundQuestion& question : questions)
-      if (waiting_.size() < kMaxWaiting) waiting_.push_back(std::move(question));
+    for (GroundQuestion& question : questions) {
+      if (waiting_.size() < kMaxWaiting)
+        waiting_.push_back(std::move(question));
+      else
+        ++dropped;
+    }
   }
+  if (dropped > 0 && !std::exchange(saidFull_, true))
+    spdlog::warn("{}: {} questions about the ground wait: more than that are dropped until there is room", name_,
+                 kMaxWaiting);
   wake_.notify_one();
   if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void GroundDesk::forget() {
+  const std::lock_guard lock(mutex_);
+  waiting_.clear();
+  ++asker_;
+  saidFull_ = false;
 }
 
 void GroundDesk::run(const std::stop_token& stop) {
@@ -41,14 +58,22 @@ void GroundDesk::run(const std::stop_token& stop) {
   if (!probe) spdlog::warn("{}: questions about the ground have no answer: {}", name_, probe.error().message);
   std::deque<GroundQuestion> taken;
   while (true) {
+    uint64_t asker = 0;
     {
       std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [this] { return !waiting_.empty(); })) return;
+      // Of a stop it tells only where nothing waits.
+      if (!wake_.wait(lock, stop, [this] { return !waiting_.empty(); }) || stop.stop_requested()) return;
       taken.swap(waiting_);
+      asker = asker_;
     }
     const TraceScope scope("ground questions");
-    for (; !taken.empty() && !stop.stop_requested(); taken.pop_front())
-      replies_.answer(answerTo(taken.front(), probe ? probe->get() : nullptr));
+    for (; !taken.empty() && !stop.stop_requested(); taken.pop_front()) {
+      const Packet answer = answerTo(taken.front(), probe ? probe->get() : nullptr);
+      const std::lock_guard lock(mutex_);
+      if (asker != asker_) break;
+      replies_.answer(answer);
+    }
+    taken.clear();
   }
 }
 

@@ -18,8 +18,10 @@ class GroundDesk {
   // every answer is "not valid".
   GroundDesk(Replies& replies, OpenProbe openProbe, std::string name);
   ~GroundDesk();
-  // Link thread. What is too much to be answered in time is dropped.
+  // Link thread. What is too much to be answered in time is dropped, and said so once.
   void ask(std::vector<GroundQuestion> questions);
+  // Link thread: nothing that was asked before is answered any more. Another host's answers would be taken for its own.
+  void forget();
 
  private:
   void run(const std::stop_token& stop);
@@ -30,6 +32,8 @@ class GroundDesk {
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::deque<GroundQuestion> waiting_;
+  uint64_t asker_ = 0;     // counts hosts
+  bool saidFull_ = false;  // the link thread's
   std::jthread thread_;
 };
 

@@ -29,6 +29,33 @@ struct Waiting {
   GroundTree::NodeNumber node = 0;
 };
 
+// Cells own their south and west edges; beyond the others it is sea.
+bool holdsData(const TileBounds& data, double latDeg, double lonDeg) {
+  if (latDeg < data.southDeg || latDeg > data.northDeg) return false;
+  const double eastwardsDeg = std::remainder(lonDeg - data.westDeg, 360.0);
+  return (eastwardsDeg < 0 ? eastwardsDeg + 360 : eastwardsDeg) <= data.eastDeg - data.westDeg;
+}
+
+tl::unexpected<Error> tooCoarse(const GroundTree::Node& node) {
+  return fail(ErrorKind::unsupported,
+              fmt::format("the terrain of {} is known to {:.0f} m only", node.key.name(), node.errorM));
+}
+
+// The part of a way within a ball about the Earth's centre that holds all terrain, as shares of it.
+struct Part {
+  double begins, ends;
+};
+std::optional<Part> partNearEarth(const Vec3d& fromEcefM, const Vec3d& wayEcefM) {
+  constexpr double kRadiusM = kSemiMajorM + 50'000;  // the coarsest chunks of a globe bulge by 33 km
+  const double a = glm::dot(wayEcefM, wayEcefM), b = glm::dot(fromEcefM, wayEcefM);
+  const double c = glm::dot(fromEcefM, fromEcefM) - kRadiusM * kRadiusM;
+  if (a == 0) return c <= 0 ? std::optional(Part{0, 1}) : std::nullopt;
+  const double inside = b * b - a * c;
+  if (inside < 0) return std::nullopt;
+  const Part part{std::max((-b - std::sqrt(inside)) / a, 0.0), std::min((-b + std::sqrt(inside)) / a, 1.0)};
+  return part.begins <= part.ends ? std::optional(part) : std::nullopt;
+}
+
 }  // namespace
 
 Result<GroundQuery> GroundQuery::open(const std::string& databasePath) {
@@ -39,8 +66,13 @@ Result<GroundQuery> GroundQuery::open(const std::string& databasePath) {
 
 Result<GroundHit> GroundQuery::under(double latDeg, double lonDeg) {
   if (const auto begun = tree_.begin(); !begun) return tl::unexpected(begun.error());
+  if (!holdsData(tree_.info().dataBounds, latDeg, lonDeg)) {
+    const Plumb plumb = plumbAt(latDeg, lonDeg);
+    return GroundHit{{latDeg, lonDeg, 0}, plumb.footEcefM, plumb.up};
+  }
   const auto leaf = tree_.leafAt(latDeg, lonDeg);
   if (!leaf) return tl::unexpected(leaf.error());
+  if (tree_.node(*leaf).errorM > kCoarsestM) return tooCoarse(tree_.node(*leaf));
   const auto found = tree_.surfaceOf(*leaf);
   if (!found) return tl::unexpected(found.error());
   const SurfaceGrid& surface = **found;
@@ -66,7 +98,12 @@ Result<GroundHit> GroundQuery::under(double latDeg, double lonDeg) {
 // nearest hit. Siblings wait in this order on a stack, so that what is near is looked at first.
 Result<std::optional<GroundHit>> GroundQuery::between(const Vec3d& fromEcefM, const Vec3d& toEcefM) {
   if (const auto begun = tree_.begin(); !begun) return tl::unexpected(begun.error());
-  const Sight sight = sightBetween(fromEcefM, toEcefM);
+  // Of a way into space only what is near the Earth: the rounding of floats grows with its length.
+  const auto part = partNearEarth(fromEcefM, toEcefM - fromEcefM);
+  if (!part) return std::nullopt;
+  const auto placeAt = [&](double share) { return fromEcefM + (toEcefM - fromEcefM) * share; };
+  const Sight sight = sightBetween(part->begins > 0 ? placeAt(part->begins) : fromEcefM,
+                                   part->ends < 1 ? placeAt(part->ends) : toEcefM);
 
   int looked = 0;
   float untilAlong = 1;  // the nearest hit, rounded up
@@ -90,6 +127,7 @@ Result<std::optional<GroundHit>> GroundQuery::between(const Vec3d& fromEcefM, co
 
   double nearestAlong = 1;
   std::optional<GroundHit> nearest;
+  GroundTree::NodeNumber hitNode = 0;
   const auto ancestors = tree_.ancestorsFor(sight);
   if (!ancestors) return tl::unexpected(ancestors.error());
   for (const uint32_t number : *ancestors) push(tree_.siblings(number));
@@ -106,12 +144,14 @@ Result<std::optional<GroundHit>> GroundQuery::between(const Vec3d& fromEcefM, co
     }
     const auto surface = tree_.surfaceOf(next.node);
     if (!surface) return tl::unexpected(surface.error());
-    const auto hit = (*surface)->cast(fromEcefM, sight.wayEcefM, nearestAlong);
+    const auto hit = (*surface)->cast(sight.fromEcefM, sight.wayEcefM, nearestAlong);
     if (!hit) continue;
     nearestAlong = hit->along;
     untilAlong = std::nextafter(static_cast<float>(nearestAlong), 2.0F);
-    nearest = GroundHit{{}, fromEcefM + sight.wayEcefM * hit->along, (*surface)->normalEcef(hit->triangle)};
+    nearest = GroundHit{{}, sight.fromEcefM + sight.wayEcefM * hit->along, (*surface)->normalEcef(hit->triangle)};
+    hitNode = next.node;
   }
+  if (nearest && tree_.node(hitNode).errorM > kCoarsestM) return tooCoarse(tree_.node(hitNode));
   if (nearest) nearest->position = geodeticFromEcef(nearest->ecefM);
   return nearest;
 }

@@ -50,7 +50,12 @@ Result<void> GroundTree::add(std::span<const TileKey> keys) {
     }
     const bool isLeaf = meta->childCount == 0;
     siblings.bounds.set(lane, meta->box, kBoxSlackM + (isLeaf ? 0 : reachBeyondM(*meta)));
-    nodes_.push_back({.bounds = key.bounds(), .key = key, .isLeaf = isLeaf, .kept = {}, .children = {}});
+    nodes_.push_back({.bounds = key.bounds(),
+                      .key = key,
+                      .isLeaf = isLeaf,
+                      .errorM = static_cast<float>(meta->geometricErrorM),
+                      .kept = {},
+                      .children = {}});
   }
   siblings_.push_back(siblings);
   return {};

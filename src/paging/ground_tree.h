@@ -25,6 +25,7 @@ class GroundTree {
     TileBounds bounds{};
     TileKey key;
     bool isLeaf = true;
+    float errorM = 0;  // geometric
     std::optional<std::list<Kept>::iterator> kept;
     std::optional<uint32_t> children;  // a number of siblings(); not read yet, or a leaf
   };
@@ -34,6 +35,7 @@ class GroundTree {
     SiblingBounds bounds;  // in this order
   };
 
+  const DatabaseInfo& info() const { return reader_.info(); }
   // Before each question. Forgets all where there are too many nodes; then reads the octants' roots. Numbers and
   // surfaces are valid up to the next call.
   Result<void> begin();

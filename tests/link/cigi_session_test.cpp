@@ -326,6 +326,64 @@ TEST_CASE("session: a host that begins anew from the same port is followed withi
   CHECK(host.pose()->position.altM == 800);
 }
 
+TEST_CASE(
+    "session: a host that was silent and counts from lower on is another run of it: nothing of the former is left") {
+  for (const uint32_t back : {40u, 5000u}) {  // frames; few are overtaken ones while it speaks
+    Host host;
+    ViewDefinition narrow;
+    narrow.leftDegOrM = -5, narrow.rightDegOrM = 5;
+    HeightRequest repeated;
+    repeated.id = 78, repeated.everyFrames = 1, repeated.point = Geodetic{1, 2, 0};
+    host.frame = 6000;
+    host.says({entityAt(3, Pose{{1, 2, 100}, 0, 0, 0}), narrow, repeated});
+    const uint64_t resets = host.session.resets();
+    (void)host.session.takeQuestions();
+    host.frame = 6000 - back;
+    host.nowNs += 5 * kSecond;
+    ViewDefinition high;
+    high.topDegOrM = 20;
+    host.says({entityAt(0, Pose{{1, 2, 700}, 0, 0, 0}), high});
+    CHECK(host.session.resets() == resets + 1);
+    REQUIRE(host.pose());
+    CHECK(host.pose()->position.altM == Approx(700));
+    CHECK(host.session.snapshot().edges.topDeg == 20.0);
+    CHECK_FALSE(host.session.snapshot().edges.leftDeg);
+    CHECK(host.session.takeQuestions().empty());
+  }
+  // Silent, and it goes on: a host that was halted.
+  Host host;
+  ViewDefinition narrow;
+  narrow.leftDegOrM = -5;
+  host.says({narrow});
+  const uint64_t resets = host.session.resets();
+  host.nowNs += 60 * kSecond;
+  host.says({});
+  CHECK(host.session.resets() == resets);
+  CHECK(host.session.snapshot().edges.leftDeg == -5.0);
+}
+
+TEST_CASE("session: visibility has no step where a layer's edge begins, whether or not an atmosphere is told") {
+  for (const bool told : {false, true}) {
+    Host host;
+    Weather haze;
+    haze.enabled = true;
+    haze.layer = 9, haze.visibilityM = 20000, haze.baseM = 0, haze.thicknessM = 2000, haze.transitionM = 1800;
+    host.says({haze});
+    if (told) {
+      Atmosphere atmosphere;
+      atmosphere.visibilityM = 100000;
+      host.says({atmosphere});
+    }
+    const Air air = host.session.snapshot().air;
+    for (double altM = 0; altM < 6000; altM += 10) {
+      const double here = *visibilityAt(air, altM), above = *visibilityAt(air, altM + 10);
+      INFO(altM << " m: " << here << " m, then " << above);
+      CHECK(std::abs(1 / here - 1 / above) <= 1 / 20000.0 / 180 + 1e-9);
+      CHECK(here <= (told ? 100000 : kClearVisibilityM) + 1e-6);
+    }
+  }
+}
+
 TEST_CASE("session: standby forgets, and obeys from operate on") {
   Host host;
   host.says({entityAt(0, Pose{})});

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "bake/baked_ground.h"
@@ -210,7 +211,11 @@ TEST_CASE("ground query: a line hits what a longer one hits, wherever the last o
     const Vec3d from = ecefFromGeodetic(at), way = ecefFromGeodetic(end) - from;
     const double longer = std::max(100'000 / glm::length(way), 1.0);
     const auto hit = query->between(from, from + way), further = fromOctants->between(from, from + way * longer);
-    REQUIRE((hit && further));
+    if (!hit || !further) {  // on terrain that is too coarse: the nearer one as well, unless it ends before
+      REQUIRE_FALSE(further);
+      CHECK((!hit || !hit->has_value()));
+      continue;
+    }
     const bool isTrue = *further && glm::length((*further)->ecefM - from) <= glm::length(way);
     INFO(i << ": " << at.latDeg << " " << at.lonDeg << " " << at.altM << " to " << end.latDeg << " " << end.lonDeg
            << " " << end.altM);
@@ -219,6 +224,47 @@ TEST_CASE("ground query: a line hits what a longer one hits, wherever the last o
     if (isTrue) CHECK(glm::length((*hit)->ecefM - (*further)->ecefM) < 1e-3);
   }
   CHECK(hits > 200);
+}
+
+TEST_CASE("ground query: beyond the data it is sea level, and nothing where terrain is next to unknown") {
+  auto query = GroundQuery::open(hills());
+  REQUIRE(query);
+  for (const auto& [lat, lon] : {std::pair(48.0, 20.2), {49.2, 170.0}, {0.0, -180.0}, {-90.0, 12.0}, {49.2, 20.51}}) {
+    const auto hit = query->under(lat, lon);
+    REQUIRE(hit);
+    CHECK(hit->position.altM == 0);
+    CHECK(glm::length(hit->ecefM - ecefFromGeodetic({lat, lon, 0})) < 1e-6);
+    CHECK(glm::dot(hit->normalEcef, upAt(lat, lon)) > 1 - 1e-12);
+  }
+  // Mid-ocean the coarsest chunks are chords of a thousand kilometres.
+  const auto far = query->between(ecefFromGeodetic({-30, -120, 20'000}), ecefFromGeodetic({-30, -120, -20'000}));
+  REQUIRE_FALSE(far);
+  CHECK(far.error().kind == ErrorKind::unsupported);
+}
+
+TEST_CASE("ground query: how far beyond the Earth a line goes on changes nothing, nor where it comes from") {
+  auto query = GroundQuery::open(hills());
+  REQUIRE(query);
+  const Vec3d from = ecefFromGeodetic({49.25, 20.25, 1200});
+  const Mat3d ecefFromEnuHere = ecefFromEnu(49.25, 20.25);
+  int hits = 0;
+  for (int i = 0; i < 72; ++i) {
+    const double azimuthRad = i * std::numbers::pi / 36, down = 0.06;
+    const Vec3d way = ecefFromEnuHere * glm::normalize(Vec3d(std::sin(azimuthRad), std::cos(azimuthRad), -down));
+    const auto near = query->between(from, from + way * 60e3), far = query->between(from, from + way * 1e9);
+    if (!near || !far) continue;
+    const bool isNear = near->has_value();
+    REQUIRE((!isNear || far->has_value()));
+    if (!isNear) continue;
+    ++hits;
+    CHECK(glm::length((*near)->ecefM - (*far)->ecefM) < 1e-3);
+    const auto fromSpace = query->between(from - way * 1e9, from + way * 60e3);
+    CHECK(fromSpace.has_value());
+  }
+  CHECK(hits > 30);
+  const auto beside = query->between(Vec3d(1e8, 0, 1e7), Vec3d(-1e8, 0, 1e7));
+  REQUIRE(beside);
+  CHECK_FALSE(beside->has_value());
 }
 
 TEST_CASE("ground query: what has been forgotten is read again, with the same answers") {
