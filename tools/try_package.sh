@@ -23,6 +23,7 @@ clean() {
 trap clean EXIT
 package=${1:-}
 if [ -z "$package" ]; then
+  cmake build/release >/dev/null  # or --version says the commit of the configuration before
   cpack --config build/release/CPackConfig.cmake -B "$work" >/dev/null
   package=$(ls "$work"/*.deb)
 fi
