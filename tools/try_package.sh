@@ -24,6 +24,7 @@ trap clean EXIT
 package=${1:-}
 if [ -z "$package" ]; then
   cmake build/release >/dev/null  # or --version says the commit of the configuration before
+  cmake --build build/release --target eyepoint eyepoint-bake eyepoint-bench eyepoint-host eyepoint-panorama eye_package_files
   cpack --config build/release/CPackConfig.cmake -B "$work" >/dev/null
   package=$(ls "$work"/*.deb)
 fi
@@ -31,8 +32,8 @@ fi
 step() { printf '\n== %s\n' "$*"; }
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp/trial DEBIAN_FRONTEND=noninteractive LANG=C.UTF-8 "$@"; }
 install() { inside apt-get -qq install -y --no-install-recommends "$@" >"$work/apt.log" 2>&1 || { cat "$work/apt.log"; die "apt fails"; }; }
-# What packages and their tools leave beside files of their own, and this script.
-listed() { (cd "$root" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./dev -o -path ./tmp -o -path ./var/cache -o -path ./var/log -o -path './var/lib/dpkg/*-old' \) -prune -o -print | sort); }
+# But for what packages and their tools leave beside files of their own, drivers in root's home, and this script.
+listed() { (cd "$root" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./dev -o -path ./tmp -o -path ./var/cache -o -path ./var/log -o -path './var/lib/dpkg/*-old' -o -path ./root \) -prune -o -print | sort); }
 written() {
   local file
   for file in "$@"; do [ -s "$root/tmp/trial/$file" ] || die "$file was not written"; done
