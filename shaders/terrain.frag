@@ -6,8 +6,8 @@
 
 layout(set = 0, binding = EYE_BIND_TEXTURES) uniform sampler2DArray textures;
 
-layout(location = 0) centroid in vec4 inLightS;
-layout(location = 1) centroid in vec4 inHazeT;
+layout(location = 0) in vec4 inLightS;
+layout(location = 1) in vec4 inHazeT;
 layout(location = 2) flat in uint inLayer;
 
 layout(location = 0) out vec4 outColour;

@@ -6,8 +6,8 @@
 #include "shared/terrain_vertex.h"
 
 // Packed: on a CPU device each output costs a triangle its slopes, used or not.
-layout(location = 0) centroid out vec4 outLightS;  // light of sun and sky on the ground, as much as comes through the haze; s
-layout(location = 1) centroid out vec4 outHazeT;   // light that the haze adds; t
+layout(location = 0) out vec4 outLightS;  // light of sun and sky on the ground, as much as comes through the haze; s
+layout(location = 1) out vec4 outHazeT;   // light that the haze adds; t
 layout(location = 2) flat out uint outLayer;
 
 void main() {

@@ -7,9 +7,9 @@
 
 layout(set = 0, binding = EYE_BIND_TEXTURES) uniform sampler2DArray textures;
 
-layout(location = 0) centroid in vec2 inTexture;
-layout(location = 1) centroid in vec3 inLight;
-layout(location = 2) centroid in vec2 inHaze;
+layout(location = 0) in vec2 inTexture;
+layout(location = 1) in vec3 inLight;
+layout(location = 2) in vec2 inHaze;
 layout(location = 3) flat in uint inLayer;
 
 layout(location = 0) out vec4 outColour;

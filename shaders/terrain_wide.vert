@@ -4,9 +4,9 @@
 #include "shared/frame.h"
 #include "shared/terrain_vertex.h"
 
-layout(location = 0) centroid out vec2 outTexture;
-layout(location = 1) centroid out vec3 outLight;
-layout(location = 2) centroid out vec2 outHaze;  // optical depth per metre, base 2; how far the haze is lit
+layout(location = 0) out vec2 outTexture;
+layout(location = 1) out vec3 outLight;
+layout(location = 2) out vec2 outHaze;  // optical depth per metre, base 2; how far the haze is lit
 layout(location = 3) flat out uint outLayer;
 
 void main() {

@@ -23,18 +23,20 @@ clean() {
 trap clean EXIT
 package=${1:-}
 if [ -z "$package" ]; then
+  cmake build/release >/dev/null  # or --version says the commit of the configuration before
+  cmake --build build/release --target eyepoint eyepoint-bake eyepoint-bench eyepoint-host eyepoint-panorama eye_package_files
   cpack --config build/release/CPackConfig.cmake -B "$work" >/dev/null
   package=$(ls "$work"/*.deb)
 fi
 
 step() { printf '\n== %s\n' "$*"; }
-inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive LANG=C.UTF-8 "$@"; }
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp/trial DEBIAN_FRONTEND=noninteractive LANG=C.UTF-8 "$@"; }
 install() { inside apt-get -qq install -y --no-install-recommends "$@" >"$work/apt.log" 2>&1 || { cat "$work/apt.log"; die "apt fails"; }; }
-# What packages and their tools leave beside files of their own, and this script.
+# But for what packages and their tools leave beside files of their own, drivers in root's home, and this script.
 listed() { (cd "$root" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./dev -o -path ./tmp -o -path ./var/cache -o -path ./var/log -o -path './var/lib/dpkg/*-old' -o -path ./root \) -prune -o -print | sort); }
 written() {
   local file
-  for file in "$@"; do [ -s "$root/root/$file" ] || die "$file was not written"; done
+  for file in "$@"; do [ -s "$root/tmp/trial/$file" ] || die "$file was not written"; done
 }
 
 step "lintian"
@@ -48,7 +50,10 @@ cp "$package" "$root/tmp/eyepoint.deb"
 inside apt-get -qq update
 mapfile -t depends < <(dpkg-deb -f "$package" Depends | tr ',' '\n' | sed 's/[(|].*//; s/ //g')
 install ca-certificates "${depends[@]}" mesa-vulkan-drivers fonts-dejavu-core man-db desktop-file-utils bash-completion
-inside apt-get -qq purge -y eyepoint >/dev/null 2>&1 || true  # of a run before that failed
+# What a run before left.
+inside apt-get -qq purge -y eyepoint >/dev/null 2>&1 || true
+rm -rf "$root/tmp/trial"
+mkdir "$root/tmp/trial"
 listed >"$work/before"
 install /tmp/eyepoint.deb
 
@@ -72,27 +77,27 @@ inside eyepoint --list-devices
 
 step "demo terrain and a picture"
 inside eyepoint-bake demo --log-level warn
-inside eyepoint --headless --offline --frames 10 --screenshot /root/picture.png --log-level warn
+inside eyepoint --headless --offline --frames 10 --screenshot /tmp/trial/picture.png --log-level warn
 inside eyepoint --config /usr/share/eyepoint/eyepoint.toml --headless --frames 2 --log-level warn
 written picture.png
 
 step "a raster of one's own"
 # shellcheck disable=SC2016  # Perl's variables
-inside perl -e 'for $y (0..1200) { print pack("s>*", map { 1500 + 900 * sin($_ / 60) * sin($y / 40) } 0..1200) }' >"$root/root/N46E007.hgt"
-inside eyepoint-bake --elevation /root/N46E007.hgt --region 7.4,46.4,7.6,46.6 --out /root/mine.eyt --log-level warn
-inside eyepoint-bake verify /root/mine.eyt
-inside eyepoint --terrain /root/mine.eyt --pose 46.4,7.5,3500,0,-10,0 --headless --screenshot /root/mine.png --distance-map /root/mine.tif --log-level warn
+inside perl -e 'for $y (0..1200) { print pack("s>*", map { 1500 + 900 * sin($_ / 60) * sin($y / 40) } 0..1200) }' >"$root/tmp/trial/N46E007.hgt"
+inside eyepoint-bake --elevation /tmp/trial/N46E007.hgt --region 7.4,46.4,7.6,46.6 --out /tmp/trial/mine.eyt --log-level warn
+inside eyepoint-bake verify /tmp/trial/mine.eyt
+inside eyepoint --terrain /tmp/trial/mine.eyt --pose 46.4,7.5,3500,0,-10,0 --headless --screenshot /tmp/trial/mine.png --distance-map /tmp/trial/mine.tif --log-level warn
 written mine.png mine.tif
 
 step "a host over loopback"
-inside sh -c 'eyepoint --headless --host native-fdm://127.0.0.1:15550 --duration 6 --size 160x120 --stats /root/run.jsonl --log-level warn &
+inside sh -c 'eyepoint --headless --host native-fdm://127.0.0.1:15550 --duration 6 --size 160x120 --stats /tmp/trial/run.jsonl --log-level warn &
   eyepoint-host --protocol native-fdm --to 127.0.0.1:15550 --scenario low-level --duration 5 --log-level warn >/dev/null; wait'
-tail -n 1 "$root/root/run.jsonl" | grep -oE '"packets": *[0-9]{3,}' || die "the host's packets did not arrive"
+tail -n 1 "$root/tmp/trial/run.jsonl" | grep -oE '"packets": *[0-9]{3,}' || die "the host's packets did not arrive"
 
 step "a panorama"
-inside eyepoint-panorama --at 36.7,128.4,+200 --out /root/panorama --width 720 --log-level warn
+inside eyepoint-panorama --at 36.7,128.4,+200 --out /tmp/trial/panorama --width 720 --log-level warn
 written panorama.png panorama.distance.tif panorama.peaks.csv
-ls -l "$root"/root/*.png
+ls -l "$root"/tmp/trial/*.png
 
 step "apt purge"
 inside apt-get -qq purge -y eyepoint >"$work/apt.log" 2>&1 || { cat "$work/apt.log"; die "purge fails"; }
