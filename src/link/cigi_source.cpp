@@ -35,6 +35,8 @@ OpenedSource openCigi(const std::string& url, const std::string& rest, const Ope
   const std::string* const answers = parsed->find("answers");
   if (answers != nullptr && *answers != "yes" && *answers != "no")
     return fail(ErrorKind::usage, fmt::format("{}: answers '{}' is neither yes nor no", url, *answers));
+  if (answers != nullptr && options.silent)
+    return fail(ErrorKind::usage, url + ": with reply=none nothing is answered: leave answers out");
   options.answers = answers == nullptr || *answers == "yes";
 
   auto socket = listenOn(*parsed);

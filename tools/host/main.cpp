@@ -24,10 +24,11 @@ namespace {
 using namespace eye;
 
 struct Arguments {
-  std::string protocol, to, interface, track, scenario, pose, cigiVersion = "3.3", logLevel = "info";
+  std::string protocol, to, interface, track, scenario, pose, cigiVersion, logLevel = "info";
   bool synchronous = false, printReplies = false;
   std::optional<int> channels;
   std::vector<std::string> ask;
+  std::optional<int> askEvery;
   cigi::AskPlan plan;            // what `ask` says, and how often
   std::optional<double> rateHz;  // unset: 60, and no limit with --synchronous
   SendOptions send;
@@ -48,7 +49,7 @@ std::string scenarioNames() {
 
 void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--protocol", args.protocol, "What to speak: native-fdm or cigi")->type_name("NAME")->required();
-  app.add_option("--cigi-version", args.cigiVersion, "Of CIGI: 3.3 or 4.0")->type_name("V")->capture_default_str();
+  app.add_option("--cigi-version", args.cigiVersion, "Of CIGI: 3.3 (default) or 4.0")->type_name("V");
   app.add_flag("--synchronous", args.synchronous, "CIGI: one message for each Start of Frame, --rate a second at most");
   app.add_option(
          "--channels", args.channels,
@@ -73,10 +74,9 @@ void declareOptions(CLI::App& app, Arguments& args) {
                    "height), hat-hot (both, and the slope), los (what is ahead within 20 km), los-extended (and where)")
       ->type_name("hat/hot/hat-hot/los/los-extended");
   ground
-      ->add_option("--ask-every", args.plan.everyFrames,
-                   "Update period of these requests, host frames: 1 asks in each, 255 at most")
-      ->type_name("FRAMES")
-      ->capture_default_str();
+      ->add_option("--ask-every", args.askEvery,
+                   "Update period of these requests, host frames: 1 asks in each, 255 at most; default 60")
+      ->type_name("FRAMES");
   ground->add_flag("--print-replies", args.printReplies, "A line for each Start of Frame and each answer");
   auto* bad = app.add_option_group("A bad link");
   bad->add_option("--jitter", args.send.badLink.jitterMs, "Delay each packet by 0 to MS")->type_name("MS");
@@ -110,7 +110,9 @@ Result<void> check(const Arguments& args) {
   if (args.protocol != "native-fdm" && !speaksCigi(args))
     return fail(ErrorKind::usage,
                 fmt::format("--protocol '{}' is not spoken; there are: native-fdm, cigi", args.protocol));
-  if (args.cigiVersion != "3.3" && args.cigiVersion != "4.0")
+  if (!args.cigiVersion.empty() && !speaksCigi(args))
+    return fail(ErrorKind::usage, "--cigi-version needs --protocol cigi");
+  if (!args.cigiVersion.empty() && args.cigiVersion != "3.3" && args.cigiVersion != "4.0")
     return fail(ErrorKind::usage, fmt::format("--cigi-version '{}' is neither 3.3 nor 4.0", args.cigiVersion));
   if (args.synchronous && !speaksCigi(args))
     return fail(ErrorKind::usage, "--synchronous needs --protocol cigi: native-fdm has no answers to wait for");
@@ -121,8 +123,10 @@ Result<void> check(const Arguments& args) {
   const bool asks = !args.ask.empty() || args.printReplies;
   if (asks && !speaksCigi(args))
     return fail(ErrorKind::usage, "--ask and --print-replies need --protocol cigi: native-fdm has no answers");
-  if (args.plan.everyFrames < 1 || args.plan.everyFrames > 255)
-    return fail(ErrorKind::usage, fmt::format("--ask-every {} is outside 1 to 255 host frames", args.plan.everyFrames));
+  if (args.askEvery && args.ask.empty())
+    return fail(ErrorKind::usage, "--ask-every needs --ask: it says how often that is asked");
+  if (args.askEvery && (*args.askEvery < 1 || *args.askEvery > 255))
+    return fail(ErrorKind::usage, fmt::format("--ask-every {} is outside 1 to 255 host frames", *args.askEvery));
   if (args.channels && !args.synchronous)
     return fail(ErrorKind::usage, "--channels needs --synchronous: without it no answer is waited for");
   constexpr int kMostChannels = 64;
@@ -227,6 +231,7 @@ int fly(Arguments args) {
   const auto asks = cigi::parseAsks(args.ask);
   if (!asks) return complain("eyepoint-host", asks.error());
   args.plan.asks = *asks;
+  args.plan.everyFrames = args.askEvery.value_or(args.plan.everyFrames);
   args.plan.firstFrame = args.synchronous ? 1 : 0;
   const auto endpoint = parseEndpoint(args.to, kLoopbackAddress, "--to");
   if (!endpoint) return complain("eyepoint-host", endpoint.error());
