@@ -71,7 +71,7 @@ class Comparison {
     // The selector's own choice, which it makes from what it measures.
     const std::optional<glm::ivec2> chosen = control_.choose(eye.pose, rig_.terrain(), rig_.selection());
     dynamic(view, whole, chosen, "dynamic auto");
-    control_.learn(rig_.output());
+    control_.learn(rig_.output(), 0);
   }
 
   const Sums& sums() const { return sums_; }
