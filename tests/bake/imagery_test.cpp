@@ -144,11 +144,11 @@ TEST_CASE("The plan: levels, tolerances and pictures follow the sources") {
       *ElevationMosaic::open({writeHeights(folder.file("h.tif"), postGrid(49, 20, 1.0 / 1200, 241, 241), hillsM)}));
   PlanOptions options;
   options.textureSize = 128;
-  const BakePlan plan = makePlan(*surface, nullptr, surface->finestSpacingDeg(), options);
+  const BakePlan plan = makePlan(*surface, nullptr, surface->spacingsDeg(), options);
   CHECK(plan.maxLevel == 14);  // 90 / 2^14 degrees are 6.6 posts of 3 arc-seconds
-  CHECK(plan.toleranceM(14) == kFinestErrorM);
-  CHECK(plan.toleranceM(9) >= 2 * plan.toleranceM(10));
-  CHECK(plan.toleranceM(9) <= 2.26 * plan.toleranceM(10));
+  CHECK(plan.finest().toleranceM(14) == kFinestErrorM);
+  CHECK(plan.finest().toleranceM(9) >= 2 * plan.finest().toleranceM(10));
+  CHECK(plan.finest().toleranceM(9) <= 2.26 * plan.finest().toleranceM(10));
   CHECK(plan.hasImagery(TileKey::octantRoot(3)));
   CHECK(plan.hasImagery(TileKey::containing(89.99, 10, 9)));
   CHECK(plan.hasImagery(TileKey::containing(49.1, 20.1, 11)));
@@ -163,9 +163,9 @@ TEST_CASE("The plan: levels, tolerances and pictures follow the sources") {
 
   // Cut short at a coarser level, it is at least as exact there as an uncut one.
   options.maxLevel = 11;
-  const BakePlan shallow = makePlan(*surface, nullptr, surface->finestSpacingDeg(), options);
-  CHECK(shallow.toleranceM(11) <= plan.toleranceM(11));
-  CHECK(shallow.toleranceM(11) > plan.toleranceM(13));
+  const BakePlan shallow = makePlan(*surface, nullptr, surface->spacingsDeg(), options);
+  CHECK(shallow.finest().toleranceM(11) <= plan.finest().toleranceM(11));
+  CHECK(shallow.finest().toleranceM(11) > plan.finest().toleranceM(13));
   options.errorM = 3;
-  CHECK(makePlan(*surface, nullptr, surface->finestSpacingDeg(), options).toleranceM(11) == 3);
+  CHECK(makePlan(*surface, nullptr, surface->spacingsDeg(), options).finest().toleranceM(11) == 3);
 }
