@@ -1,11 +1,9 @@
 // Refraction and the Earth's curvature where both are known in closed form: two peaks that stand in the sea.
 #include <cmath>
 
-#include <spdlog/spdlog.h>
 #include <catch2/catch.hpp>
 
-#include "bake/bake_job.h"
-#include "bake/raster_files.h"
+#include "pano/bake_ground.h"
 #include "pano/peaks.h"
 #include "pano/render_panorama.h"
 #include "render/renderer.h"
@@ -27,18 +25,7 @@ double peaksM(double latDeg, double lonDeg) {
 
 const std::string& database() {
   static const TestFolder folder;
-  static const std::string path = [] {
-    spdlog::set_level(spdlog::level::warn);
-    BakeJob job;
-    job.elevation = {writeHeights(folder.file("sea.tif"), postGrid(44.8, 9.7, kStepDeg, 401, 121), peaksM)};
-    job.out = folder.file("sea.eyt");
-    job.plan.errorM = 1;
-    job.plan.textureSize = 32;
-    BakeControl control;
-    control.jobs = 2;
-    REQUIRE(runBake(job, control));
-    return job.out;
-  }();
+  static const std::string path = bakeGround(folder, postGrid(44.8, 9.7, kStepDeg, 401, 121), peaksM, 1);
   return path;
 }
 

@@ -6,12 +6,10 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <catch2/catch.hpp>
 
-#include "bake/bake_job.h"
-#include "bake/raster_files.h"
+#include "pano/bake_ground.h"
 #include "pano/render_panorama.h"
 #include "render/renderer.h"
 
@@ -43,21 +41,9 @@ constexpr std::array<Standpoint, 3> kStandpoints{
 
 const std::string& database() {
   static const TestFolder folder;
-  static const std::string path = [] {
-    spdlog::set_level(spdlog::level::warn);
-    BakeJob job;
-    const auto rows = static_cast<int>(std::lround(kHighDeg / kStepDeg)) + 1,
-               columns = static_cast<int>(std::lround(kWideDeg / kStepDeg)) + 1;
-    job.elevation = {
-        writeHeights(folder.file("island.tif"), postGrid(kSouthDeg, kWestDeg, kStepDeg, rows, columns), islandM)};
-    job.out = folder.file("island.eyt");
-    job.plan.errorM = 0.5;
-    job.plan.textureSize = 32;
-    BakeControl control;
-    control.jobs = 2;
-    REQUIRE(runBake(job, control));
-    return job.out;
-  }();
+  const auto posts = [](double sizeDeg) { return static_cast<int>(std::lround(sizeDeg / kStepDeg)) + 1; };
+  static const std::string path =
+      bakeGround(folder, postGrid(kSouthDeg, kWestDeg, kStepDeg, posts(kHighDeg), posts(kWideDeg)), islandM, 0.5);
   return path;
 }
 
