@@ -11,8 +11,6 @@ namespace eye {
 namespace {
 
 constexpr double kThreeArcSecondsDeg = 3.0 / 3600;
-// Half a post: the palette's slopes and borders have that much detail between posts, finer texels would only blur it.
-constexpr double kPaletteDetailPosts = 0.5;
 // Texels up to so many times the source's detail are as good as it, at a quarter of the bytes of the next level.
 constexpr double kTexelSlack = 1.4;
 
