@@ -157,7 +157,7 @@ BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery,
   plan.region = options.region;
   plan.shard = options.shard;
   std::ranges::sort(spacingsDeg);
-  spacingsDeg.erase(std::ranges::unique(spacingsDeg).begin(), spacingsDeg.end());
+  spacingsDeg.erase(std::unique(spacingsDeg.begin(), spacingsDeg.end()), spacingsDeg.end());
   int pictureLevel = 0;
   const double pixelDeg = imagery != nullptr ? imagery->finestPixelDeg({-90, 90, -180, 180}) : 0;
   while (pixelDeg > 0 && pictureLevel < kMaxLevel &&

@@ -53,8 +53,10 @@ std::vector<DetailAround> paletteDetail(const ElevationSurface& surface, const T
     DetailAround detail{within(0.001), within(1), 1};
     if (detail.aroundDeg > detail.hereDeg) {
       detail.hereShare = 0;
-      for (double step = 0.5; step > 0.005; step /= 2)
-        if (within(detail.hereShare + step) <= detail.hereDeg) detail.hereShare += step;
+      for (int halving = 1; halving <= 7; ++halving) {
+        const double further = detail.hereShare + std::ldexp(1.0, -halving);
+        if (within(further) <= detail.hereDeg) detail.hereShare = further;
+      }
     }
     details.push_back(detail);
   }

@@ -1,5 +1,6 @@
 #include "pano/run.h"
 
+#include <algorithm>
 #include <future>
 #include <sstream>
 
