@@ -70,15 +70,15 @@ Result<BakeOutcome> runBake(const BakeJob& job, BakeControl control) {
   }
 
   const BakePlan plan =
-      makePlan(surface, job.imagery.empty() ? nullptr : imagery->get(), surface.finestSpacingDeg(), job.plan);
+      makePlan(surface, job.imagery.empty() ? nullptr : imagery->get(), surface.spacingsDeg(), job.plan);
   DatabaseInfo info;
   info.maxLevel = plan.maxLevel;
-  info.finestErrorM = plan.finestErrorM;
+  info.finestErrorM = plan.finest().finestErrorM;
   info.textureSize = plan.textureSize;
   info.dataBounds = surface.dataBounds();
   info.description = describe(job);
-  spdlog::info("{}: levels 0 to {}, finest error {:.3g} m, textures {} x {}", job.out, plan.maxLevel, plan.finestErrorM,
-               plan.textureSize, plan.textureSize);
+  spdlog::info("{}: levels 0 to {}, finest error {:.3g} m, textures {} x {}", job.out, plan.maxLevel,
+               plan.finest().finestErrorM, plan.textureSize, plan.textureSize);
   const bool exists = std::filesystem::exists(job.out, ignored);
   Result<DatabaseWriter> writer =
       exists ? DatabaseWriter::resume(job.out, info) : DatabaseWriter::create(job.out, info);

@@ -11,8 +11,6 @@ namespace eye {
 namespace {
 
 constexpr double kThreeArcSecondsDeg = 3.0 / 3600;
-// Half a post: the palette's slopes and borders have that much detail between posts, finer texels would only blur it.
-constexpr double kPaletteDetailPosts = 0.5;
 // Texels up to so many times the source's detail are as good as it, at a quarter of the bytes of the next level.
 constexpr double kTexelSlack = 1.4;
 
@@ -36,6 +34,20 @@ double thriftyErrorM(int level, int meshLevel) {
 
 double cellHeightDeg(int level) {
   return 90 / std::exp2(level);
+}
+
+int naturalLevel(double spacingDeg) {
+  int level = 0;
+  while (level < kMaxLevel && cellHeightDeg(level) > kLeafPosts * spacingDeg) ++level;
+  return level;
+}
+
+// Cut short at a coarser level it is as exact there as an uncut bake would be.
+SourceDetail sourceDetail(double spacingDeg, int maxLevel) {
+  const int leafLevel = naturalLevel(spacingDeg), meshLevel = std::min(leafLevel, maxLevel);
+  const double leafErrorM = kFinestErrorM * std::max(1.0, spacingDeg / kThreeArcSecondsDeg);
+  return {spacingDeg, meshLevel,
+          meshLevel < leafLevel ? std::max(leafErrorM, thriftyErrorM(meshLevel, leafLevel)) : leafErrorM};
 }
 
 bool meets(const TileBounds& a, const TileBounds& b) {
@@ -82,9 +94,26 @@ bool isFinerThanTexels(const BakePlan& plan, const TileBounds& region, int level
 
 }  // namespace
 
-double BakePlan::toleranceM(int level) const {
+double SourceDetail::toleranceM(int level) const {
   if (level >= meshLevel) return finestErrorM;
   return std::max(finestErrorM * std::exp2(meshLevel - level), thriftyErrorM(level, meshLevel));
+}
+
+const SourceDetail& BakePlan::sourceOf(double spacingDeg) const {
+  const auto at = std::ranges::find_if(sources, [&](const SourceDetail& s) { return s.spacingDeg >= spacingDeg; });
+  return at == sources.end() ? sources.back() : *at;
+}
+
+double BakePlan::toleranceM(const TileKey& key) const {
+  double leastM = finest().toleranceM(key.level());
+  for (std::optional<TileKey> tile = key; tile; tile = tile->parent()) {
+    const int level = tile->level();
+    const auto isLess = [&](const SourceDetail& source) { return source.toleranceM(level) < leastM; };
+    if (std::ranges::none_of(sources, isLess)) continue;  // spares a look at the sources at fine levels
+    for (const double spacingDeg : surface->spacingsDeg(tile->bounds()))
+      leastM = std::min(leastM, sourceOf(spacingDeg).toleranceM(level));
+  }
+  return leastM;
 }
 
 bool BakePlan::wantsFinerImagery(const TileKey& key) const {
@@ -101,13 +130,14 @@ bool BakePlan::hasImagery(const TileKey& key) const {
 // nothing beyond its border is wrong by more pixels than what is inside.
 bool BakePlan::wantsChildren(const TileKey& key, double geometricErrorM) const {
   if (key.level() >= maxLevel) return false;
-  const double besideDeg = key.level() < meshLevel - kNoFinerBesideData ? cellHeightDeg(key.level()) : 0;
+  const double besideDeg = key.level() < finest().meshLevel - kNoFinerBesideData ? cellHeightDeg(key.level()) : 0;
   const std::vector<TileBounds> near = grown(key.bounds(), besideDeg);
   if (region && std::ranges::none_of(near, [&](const TileBounds& part) { return meets(*region, part); })) return false;
   if (wantsFinerImagery(key) && (!region || meets(*region, key.bounds()))) return true;
   const double spacingDeg = finestSpacingOfAny(*surface, near);
-  return spacingDeg > 0 && key.level() < meshLevel && cellHeightDeg(key.level()) > kLeafPosts * spacingDeg &&
-         geometricErrorM > finestErrorM;
+  if (spacingDeg == 0) return false;
+  const SourceDetail& source = sourceOf(spacingDeg);
+  return key.level() < source.meshLevel && geometricErrorM > source.finestErrorM;
 }
 
 double BakePlan::texelErrorM(const TileKey& key) const {
@@ -118,7 +148,7 @@ double BakePlan::texelErrorM(const TileKey& key) const {
   return texelM(key.level(), textureSize) * (fromImagery ? 1.0 : kPaletteTexelWeight);
 }
 
-BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery, double finestSpacingDeg,
+BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery, std::vector<double> spacingsDeg,
                   const PlanOptions& options) {
   BakePlan plan;
   plan.surface = &surface;
@@ -126,21 +156,24 @@ BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery,
   plan.textureSize = options.textureSize;
   plan.region = options.region;
   plan.shard = options.shard;
-  int naturalLevel = 0;
-  while (naturalLevel < kMaxLevel && cellHeightDeg(naturalLevel) > kLeafPosts * finestSpacingDeg) ++naturalLevel;
+  std::ranges::sort(spacingsDeg);
+  spacingsDeg.erase(std::unique(spacingsDeg.begin(), spacingsDeg.end()), spacingsDeg.end());
   int pictureLevel = 0;
   const double pixelDeg = imagery != nullptr ? imagery->finestPixelDeg({-90, 90, -180, 180}) : 0;
   while (pixelDeg > 0 && pictureLevel < kMaxLevel &&
          texelDeg(pictureLevel, plan.textureSize) > kTexelSlack * pixelDeg) {
     ++pictureLevel;
   }
-  plan.maxLevel = std::min(options.maxLevel.value_or(std::max(naturalLevel, pictureLevel)), kMaxLevel);
-  plan.meshLevel = std::min(naturalLevel, plan.maxLevel);
-  const double leafErrorM = kFinestErrorM * std::max(1.0, finestSpacingDeg / kThreeArcSecondsDeg);
-  // A bake cut short at a coarser level is as exact there as an uncut one would be.
-  const bool isCut = plan.meshLevel < naturalLevel;
-  plan.finestErrorM =
-      options.errorM.value_or(isCut ? std::max(leafErrorM, thriftyErrorM(plan.meshLevel, naturalLevel)) : leafErrorM);
+  const int finestLevel = std::max(naturalLevel(spacingsDeg.front()), pictureLevel);
+  plan.maxLevel = std::min(options.maxLevel.value_or(finestLevel), kMaxLevel);
+  for (const double spacingDeg : spacingsDeg) plan.sources.push_back(sourceDetail(spacingDeg, plan.maxLevel));
+  if (options.errorM) {
+    const double finestErrorM = plan.finest().finestErrorM;
+    for (SourceDetail& source : plan.sources) {
+      const bool isCoarse = source.finestErrorM > finestErrorM;
+      source.finestErrorM = isCoarse ? std::max(source.finestErrorM, *options.errorM) : *options.errorM;
+    }
+  }
   return plan;
 }
 

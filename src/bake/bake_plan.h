@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "bake/elevation.h"
 #include "bake/imagery_mosaic.h"
@@ -16,6 +17,15 @@ inline constexpr int kLeafPosts = 8;
 // error.
 inline constexpr double kFinestErrorM = 0.25;
 
+// How a source is baked, whatever others there are: the level where its posts end, the tolerance there and above.
+struct SourceDetail {
+  double spacingDeg = 0;
+  int meshLevel = 0;
+  double finestErrorM = kFinestErrorM;
+
+  double toleranceM(int level) const;
+};
+
 // One of several processes that share a bake, see shard.h.
 struct Shard {
   int index = 1, count = 1;  // 1 to count
@@ -27,17 +37,21 @@ struct BakePlan {
   const ImageryMosaic* imagery = nullptr;  // may be null
   int textureSize = 256;
   int maxLevel = 0;
-  int meshLevel = 0;  // the level whose tolerance is finestErrorM; below it only imagery refines
-  double finestErrorM = kFinestErrorM;
-  std::optional<TileBounds> region;  // refine only what meets it
-  std::optional<Shard> shard;        // make only this part
+  std::vector<SourceDetail> sources;  // the finest first
+  std::optional<TileBounds> region;   // refine only what meets it
+  std::optional<Shard> shard;         // make only this part
 
-  double toleranceM(int level) const;
+  // The least of those that the sources in the tile, or in one that it descends from, have at that level: a globe is as
+  // exact where it is baked alone as where it lies around something finer, and errors fall from parent to child.
+  double toleranceM(const TileKey& key) const;
   bool hasImagery(const TileKey& key) const;
   // Whether a child could show finer imagery than the tile.
   bool wantsFinerImagery(const TileKey& key) const;
   bool wantsChildren(const TileKey& key, double geometricErrorM) const;
   double texelErrorM(const TileKey& key) const;
+
+  const SourceDetail& finest() const { return sources.front(); }
+  const SourceDetail& sourceOf(double spacingDeg) const;
 };
 
 struct PlanOptions {
@@ -48,8 +62,8 @@ struct PlanOptions {
   std::optional<Shard> shard;
 };
 
-// `finestSpacingDeg`: of all elevation sources.
-BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery, double finestSpacingDeg,
+// `spacingsDeg`: of all elevation sources, at least one.
+BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery, std::vector<double> spacingsDeg,
                   const PlanOptions& options);
 
 }  // namespace eye

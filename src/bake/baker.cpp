@@ -144,7 +144,7 @@ std::vector<Family> familiesOf(std::vector<TileKey> parents) {
 }  // namespace
 
 Result<StoredChunk> bakeTile(const BakePlan& plan, const TileKey& key) {
-  MeshedTile tile = meshTile(*plan.surface, key, plan.toleranceM(key.level()));
+  MeshedTile tile = meshTile(*plan.surface, key, [&](const TileKey& of) { return plan.toleranceM(of); });
   StoredChunk chunk;
   chunk.meta = tile.meta;
   chunk.meta.texelErrorM = plan.texelErrorM(key);

@@ -104,7 +104,8 @@ class Measure {
  private:
   SampleGrid::Curvature curvatureAt(double latDeg) const {
     if (latDeg >= grid_.latDeg.front() && latDeg <= grid_.latDeg.back()) {
-      return grid_.curvature[cellOf(grid_.latDeg, latDeg)];
+      // At the row's side towards the equator: at a pole itself longitudes turn without end.
+      return grid_.curvature[cellOf(grid_.latDeg, latDeg) + (latDeg < 0 ? 1 : 0)];
     }
     const Parallel p = parallelAt(latDeg);
     return {meridianRadiusM(p.sinLat), p.primeVerticalM, p.sinLat, p.cosLat};

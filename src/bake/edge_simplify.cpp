@@ -204,13 +204,16 @@ std::vector<EdgePoint> simplifyEdge(const ElevationSurface& surface, const EdgeU
   return kept;
 }
 
-TileBoundary makeBoundary(const ElevationSurface& surface, const TileKey& key, double toleranceM, double stepM) {
+TileBoundary makeBoundary(const ElevationSurface& surface, const TileKey& key, const TileTolerance& toleranceM,
+                          double stepM) {
   const TileBounds b = key.bounds();
   const Side poleward = key.isSouthern() ? Side::south : Side::north;
+  const double ownToleranceM = toleranceM(key);
   TileBoundary boundary;
   for (size_t i = 0; i < kSides.size(); ++i) {
     const Side side = kSides[i];
     if (key.isPolar() && side == poleward) continue;  // a point
+    const TileList<2> across = key.neighbours(side);
     std::vector<EdgeUnit> units;
     if (side == Side::east || side == Side::west) {
       const double lonDeg = side == Side::east ? b.eastDeg : b.westDeg;
@@ -218,7 +221,7 @@ TileBoundary makeBoundary(const ElevationSurface& surface, const TileKey& key, d
     } else {
       const double latDeg = side == Side::south ? b.southDeg : b.northDeg;
       const double middleDeg = (b.westDeg + b.eastDeg) / 2.0;
-      if (key.neighbours(side).count == 2) {
+      if (across.count == 2) {
         units.push_back({{latDeg, b.westDeg}, {latDeg, middleDeg}});
         units.push_back({{latDeg, middleDeg}, {latDeg, b.eastDeg}});
       } else {
@@ -226,8 +229,9 @@ TileBoundary makeBoundary(const ElevationSurface& surface, const TileKey& key, d
       }
     }
     std::vector<EdgePoint> points;
-    for (const EdgeUnit& unit : units) {
-      const std::vector<EdgePoint> part = simplifyEdge(surface, unit, toleranceM, stepM);
+    for (size_t u = 0; u < units.size(); ++u) {
+      const double unitToleranceM = std::min(ownToleranceM, toleranceM(across.items[u]));
+      const std::vector<EdgePoint> part = simplifyEdge(surface, units[u], unitToleranceM, stepM);
       points.insert(points.end(), part.begin() + (points.empty() ? 0 : 1), part.end());
     }
     if (side == Side::north || side == Side::west) std::reverse(points.begin(), points.end());

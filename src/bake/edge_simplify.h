@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "bake/elevation.h"
@@ -32,6 +33,9 @@ struct TileBoundary {
   std::vector<EdgePoint> loop;
   std::array<uint16_t, 4> counts{};  // ChunkMesh::boundary
 };
-TileBoundary makeBoundary(const ElevationSurface& surface, const TileKey& key, double toleranceM, double stepM);
+// What any tile of the level may be off by, metres.
+using TileTolerance = std::function<double(const TileKey&)>;
+TileBoundary makeBoundary(const ElevationSurface& surface, const TileKey& key, const TileTolerance& toleranceM,
+                          double stepM);
 
 }  // namespace eye

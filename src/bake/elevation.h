@@ -28,6 +28,8 @@ class ElevationSurface {
   virtual PostLines postLines(const TileBounds& region) const = 0;
   // Post spacing in degrees of latitude of the finest source that meets the region; 0 where none does.
   virtual double finestSpacingDeg(const TileBounds& region) const = 0;
+  // Of every source that shows in the region; empty where none does.
+  virtual std::vector<double> spacingsDeg(const TileBounds& region) const;
   virtual TileBounds dataBounds() const = 0;
 };
 

@@ -238,20 +238,25 @@ PostLines ElevationMosaic::postLines(const TileBounds& region) const {
   return lines;
 }
 
-double ElevationMosaic::finestSpacingDeg(const TileBounds& region) const {
-  double finestDeg = 0;
+std::vector<double> ElevationMosaic::spacingsDeg(const TileBounds& region) const {
+  std::vector<double> spacingsDeg;
   for (const ElevationLayer& layer : impl_->layers) {
     if (!layer.meets(region, kFadePosts)) continue;
-    if (finestDeg == 0 || layer.latStepDeg() < finestDeg) finestDeg = layer.latStepDeg();
+    spacingsDeg.push_back(layer.latStepDeg());
     if (layer.covers(region)) break;
   }
-  return finestDeg;
+  return spacingsDeg;
 }
 
-double ElevationMosaic::finestSpacingDeg() const {
-  double finestDeg = impl_->layers.front().latStepDeg();
-  for (const ElevationLayer& layer : impl_->layers) finestDeg = std::min(finestDeg, layer.latStepDeg());
-  return finestDeg;
+double ElevationMosaic::finestSpacingDeg(const TileBounds& region) const {
+  const std::vector<double> shown = spacingsDeg(region);
+  return shown.empty() ? 0 : std::ranges::min(shown);
+}
+
+std::vector<double> ElevationMosaic::spacingsDeg() const {
+  std::vector<double> spacingsDeg;
+  for (const ElevationLayer& layer : impl_->layers) spacingsDeg.push_back(layer.latStepDeg());
+  return spacingsDeg;
 }
 
 TileBounds ElevationMosaic::dataBounds() const {

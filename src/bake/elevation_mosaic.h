@@ -29,10 +29,11 @@ class ElevationMosaic final : public ElevationSurface {
   void heightsM(const std::vector<LatLon>& points, std::vector<double>& heightsM) const override;
   PostLines postLines(const TileBounds& region) const override;
   double finestSpacingDeg(const TileBounds& region) const override;
+  std::vector<double> spacingsDeg(const TileBounds& region) const override;
   TileBounds dataBounds() const override;
 
-  // Finest spacing of all, degrees of latitude.
-  double finestSpacingDeg() const;
+  // Of all layers.
+  std::vector<double> spacingsDeg() const;
   const std::vector<ElevationLayer>& layers() const;
   // What went wrong while reading heights since the start; heights read after that are not to be trusted.
   std::optional<Error> readError() const;

@@ -199,6 +199,11 @@ void fillMeta(const TileKey& key, const TileMesh& mesh, double stepM, ChunkMeta&
 }  // namespace
 
 MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double toleranceM) {
+  return meshTile(surface, key, [toleranceM](const TileKey&) { return toleranceM; });
+}
+
+MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, const TileTolerance& toleranceM) {
+  const double ownToleranceM = toleranceM(key);
   thread_local TileMesh mesh;
   const TileFrame frame = makeTileFrame(key);
   MeshedTile tile;
@@ -209,7 +214,7 @@ MeshedTile meshTile(const ElevationSurface& surface, const TileKey& key, double 
     const double stepM = std::ldexp(latticeStepM(key.level()), shift);
     const TileBoundary boundary = makeBoundary(surface, key, toleranceM, stepM);
     mesh.reset(frame, stepM, boundary.loop);
-    tile.meta.geometricErrorM = refine(surface, key, toleranceM, stepM, mesh);
+    tile.meta.geometricErrorM = refine(surface, key, ownToleranceM, stepM, mesh);
     if (!fitsSixteenBits(mesh.vertices(), tile.meta.originLattice)) continue;
     tile.meta.latticeShift = shift;
     tile.mesh.boundary = boundary.counts;

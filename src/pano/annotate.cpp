@@ -94,7 +94,7 @@ Result<int> annotate(Panorama& panorama, std::span<const PanoramaPeak> peaks, co
     visible.push_back(&peak);
     wishes.push_back({peak.x, peak.y, lengthPx, peak.summit.altM - kHeightPerKm * peak.trueM / 1000});
   }
-  const double titleWidthPx = canvas->textWidthPx(title, size, TextWeight::regular);
+  const double titleWidthPx = canvas->textWidthPx(title, size, TextWeight::bold);
   const std::array taken{glm::dvec4(0, 0, titleWidthPx + 2 * size, 2.2 * size)};
   const std::vector<int> skyline = skylineRows(panorama);
   const std::vector<PlacedLabel> labels = placeLabels({frame.widthPx, frame.heightPx, size, skyline, taken}, wishes);
@@ -110,7 +110,7 @@ Result<int> annotate(Panorama& panorama, std::span<const PanoramaPeak> peaks, co
     canvas->text(figuresOf(peak), label.foot + along * after, small, TextWeight::regular, kDark, label.slopeRad);
   }
   drawScale(*canvas, frame);
-  canvas->text(title, {size, 1.5 * size}, size, TextWeight::regular, kDark);
+  canvas->text(title, {size, 1.5 * size}, size, TextWeight::bold, kPale);
   canvas->finish();
   return static_cast<int>(labels.size());
 }

@@ -13,6 +13,9 @@ constexpr double kHaloShare = 0.22;  // of the text's size
 struct SurfaceCloser {
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
 };
+struct FontOptionsCloser {
+  void operator()(cairo_font_options_t* options) const { cairo_font_options_destroy(options); }
+};
 struct ContextCloser {
   void operator()(cairo_t* context) const { cairo_destroy(context); }
 };
@@ -64,6 +67,11 @@ Result<Canvas> Canvas::over(std::vector<uint8_t>& rgba, const PanoramaFrame& fra
       impl->row(row)[column] = toCairo(&rgba[frame.at(column, row) * 4]);
   cairo_surface_mark_dirty(impl->surface.get());
   impl->context.reset(cairo_create(impl->surface.get()));
+  // Hinted advances are whole pixels: level text would be measured as wider or narrower than the same text at a slant.
+  const std::unique_ptr<cairo_font_options_t, FontOptionsCloser> fontOptions(cairo_font_options_create());
+  cairo_font_options_set_hint_metrics(fontOptions.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_hint_style(fontOptions.get(), CAIRO_HINT_STYLE_NONE);
+  cairo_set_font_options(impl->context.get(), fontOptions.get());
   cairo_set_line_join(impl->context.get(), CAIRO_LINE_JOIN_ROUND);
   return Canvas(std::move(impl));
 }

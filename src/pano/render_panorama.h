@@ -19,7 +19,7 @@ struct PanoramaOptions {
   double refraction = 0.13;
   EarthShape earth = EarthShape::ellipsoid;
   DepthKind depth = DepthKind::range;
-  double timeOfDayH = 10;  // local solar time, on midsummer's day
+  double timeOfDayH = 8;  // local solar time, on midsummer's day
   double visibilityM = 150000;
   uint64_t cacheGpuMiB = 1024;
   std::function<void(const std::string& what, double share)> progress;  // may be empty

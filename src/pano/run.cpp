@@ -1,5 +1,6 @@
 #include "pano/run.h"
 
+#include <algorithm>
 #include <future>
 #include <sstream>
 
@@ -22,13 +23,20 @@ constexpr double kPersonM = 2;
 constexpr double kLeastAboveGroundM = 0.6;  // the near plane is half a metre away
 constexpr double kMostAltM = 100000;        // refraction as an arc is a matter of the air
 
-std::string titleOf(const PanoramaOptions& options) {
-  const Geodetic& eye = options.eye;
-  return fmt::format("{:.4f}\u00b0 {}, {:.4f}\u00b0 {}, {:.0f} m", std::abs(eye.latDeg), eye.latDeg < 0 ? "S" : "N",
-                     std::abs(eye.lonDeg), eye.lonDeg < 0 ? "W" : "E", eye.altM);
-}
-
 }  // namespace
+
+std::string titleOf(const Geodetic& eye, std::span<const Summit> summits) {
+  const auto awayM = [&](const Summit& summit) {
+    return glm::distance(ecefFromGeodetic({summit.latDeg, summit.lonDeg, 0}),
+                         ecefFromGeodetic({eye.latDeg, eye.lonDeg, 0}));
+  };
+  std::string title;
+  double nearestM = kSummitReachM;
+  for (const Summit& summit : summits)
+    if (const double m = awayM(summit); m < nearestM) nearestM = m, title = summit.name + "   ";
+  return title + fmt::format("{:.4f}\u00b0 {}, {:.4f}\u00b0 {}, {:.0f} m", std::abs(eye.latDeg),
+                             eye.latDeg < 0 ? "S" : "N", std::abs(eye.lonDeg), eye.lonDeg < 0 ? "W" : "E", eye.altM);
+}
 
 Result<EyeWish> parseEyeWish(const std::string& text) {
   const auto refuse = [&](const std::string& why) {
@@ -58,16 +66,17 @@ Result<EyeWish> parseEyeWish(const std::string& text) {
 }
 
 Result<Geodetic> placeEye(const EyeWish& wish, GroundQuery& ground) {
-  const Result<GroundHit> under = ground.under(wish.latDeg, wish.lonDeg);
-  if (!under) return tl::unexpected(under.error());
-  const double groundM = under->position.altM;
+  const Geodetic wished{wish.latDeg, wish.lonDeg, 0};
+  const Result<Geodetic> stand = climb(ground, wished, wish.onSummit ? kSummitReachM : 0);
+  if (!stand) return tl::unexpected(stand.error());
+  const double groundM = stand->altM;
   const double altM = wish.altM.value_or(groundM + wish.aboveGroundM.value_or(kPersonM));
   if (altM < groundM + kLeastAboveGroundM)
     return fail(ErrorKind::usage,
                 fmt::format("--at {},{}: {:.1f} m is not {} m above the ground, which is at {:.1f} m there; give a "
                             "greater altitude, or +2",
                             wish.latDeg, wish.lonDeg, altM, kLeastAboveGroundM, groundM));
-  return Geodetic{wish.latDeg, wish.lonDeg, altM};
+  return Geodetic{stand->latDeg, stand->lonDeg, altM};
 }
 
 Result<void> runPanorama(const PanoramaJob& job) {
@@ -99,7 +108,7 @@ Result<void> runPanorama(const PanoramaJob& job) {
   const auto peaks = findPeaks(panorama, options, *summits);
   if (!peaks) return tl::unexpected(peaks.error());
   drawRidges(panorama);
-  const Result<int> named = annotate(panorama, *peaks, titleOf(options));
+  const Result<int> named = annotate(panorama, *peaks, titleOf(options.eye, *summits));
   if (!named) return tl::unexpected(named.error());
   options.progress("writing", 0.97);
   const auto picture =

@@ -1,6 +1,11 @@
 #include "bake/bake_plan.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <catch2/catch.hpp>
+
+#include "bake/post_surface.h"
 
 namespace eye {
 namespace {
@@ -24,10 +29,29 @@ class PatchOfPosts final : public ElevationSurface {
   TileBounds patch_;
 };
 
+// A globe of 5 minutes with a patch of 3 seconds over it.
+class PatchOverGlobe final : public ElevationSurface {
+ public:
+  double heightM(double, double) const override { return 0; }
+  PostLines postLines(const TileBounds&) const override { return {}; }
+  double finestSpacingDeg(const TileBounds& r) const override { return std::ranges::min(spacingsDeg(r)); }
+  std::vector<double> spacingsDeg(const TileBounds& r) const override {
+    const bool meets = r.southDeg < 50 && 47 < r.northDeg && r.westDeg < kEastDeg && 18 < r.eastDeg;
+    if (!meets) return {kGlobeDeg};
+    const bool covers = r.southDeg >= 47 && r.northDeg <= 50 && r.westDeg >= 18 && r.eastDeg <= kEastDeg;
+    return covers ? std::vector{kPatchDeg} : std::vector{kPatchDeg, kGlobeDeg};
+  }
+  TileBounds dataBounds() const override { return {-90, 90, -180, 180}; }
+
+  static constexpr double kPatchDeg = 1.0 / 1200, kGlobeDeg = 1.0 / 12;
+  // Tiles of level 9 lie inside of it whose parents, as exact as the globe, do not.
+  static constexpr double kEastDeg = 22.2;
+};
+
 BakePlan planFor(const ElevationSurface& surface, std::optional<TileBounds> region = {}) {
   PlanOptions options;
   options.region = region;
-  return makePlan(surface, nullptr, PatchOfPosts::kSpacingDeg, options);
+  return makePlan(surface, nullptr, {PatchOfPosts::kSpacingDeg}, options);
 }
 
 bool wants(const BakePlan& plan, const TileKey& key) {
@@ -51,7 +75,7 @@ TEST_CASE("refinement beside fine data goes on across the date line") {
     const BakePlan turnedPlans[] = {planFor(turned), planFor(globe, atGreenwich)};
     for (size_t i = 0; i < 2; ++i) {
       int wanted = 0, beyond = 0;
-      for (int level = 2; level < plans[i].meshLevel - 3; ++level) {
+      for (int level = 2; level < plans[i].finest().meshLevel - 3; ++level) {
         const double cellDeg = 90 / std::exp2(level);
         for (double lat = latDeg + 0.5 - 3 * cellDeg; lat < latDeg + 0.5 + 3 * cellDeg; lat += cellDeg / 2) {
           if (std::abs(lat) >= 90) continue;
@@ -69,6 +93,45 @@ TEST_CASE("refinement beside fine data goes on across the date line") {
       CHECK(beyond > 20);
     }
   }
+}
+
+// What a globe is baked to does not hang on what lies elsewhere over it.
+TEST_CASE("each source keeps its own accuracy beside a finer one") {
+  const PatchOverGlobe both;
+  const BakePlan plan = makePlan(both, nullptr, {PatchOverGlobe::kPatchDeg, PatchOverGlobe::kGlobeDeg}, {});
+  const test::PostSurface globe(12, [](double, double) { return 0.0; });
+  const PatchOfPosts patch({47, 50, 18, PatchOverGlobe::kEastDeg});
+  const BakePlan globeAlone = makePlan(globe, nullptr, {PatchOverGlobe::kGlobeDeg}, {}), patchAlone = planFor(patch);
+  CHECK(plan.maxLevel == 14);
+  CHECK(globeAlone.maxLevel == 8);
+  for (int level = 0; level <= 8; ++level) {
+    const TileKey key = TileKey::containing(-33, 60, level);
+    INFO(key.name());
+    CHECK(plan.toleranceM(key) == globeAlone.toleranceM(key));
+    for (const double errorM : {1.0, 24.9, 25.1, 1e6})
+      CHECK(plan.wantsChildren(key, errorM) == globeAlone.wantsChildren(key, errorM));
+  }
+  CHECK(plan.toleranceM(TileKey::containing(-33, 60, 8)) == Approx(25));
+  for (int level = 8; level <= 14; ++level) {
+    const TileKey key = TileKey::containing(48.5, 20.1, level);
+    INFO(key.name());
+    CHECK(plan.toleranceM(key) == patchAlone.toleranceM(key));
+  }
+  // The selection takes a chunk's descendants to lie within twice its own error.
+  for (double lat = 46.03; lat < 51; lat += 0.07) {
+    for (double lon = 17.03; lon < 23; lon += 0.07) {
+      for (int level = 14; level > 0; --level) {
+        const TileKey key = TileKey::containing(lat, lon, level);
+        REQUIRE(plan.toleranceM(key) <= plan.toleranceM(*key.parent()));
+      }
+    }
+  }
+
+  PlanOptions options;
+  options.errorM = 2;
+  const BakePlan given = makePlan(both, nullptr, {PatchOverGlobe::kPatchDeg, PatchOverGlobe::kGlobeDeg}, options);
+  CHECK(given.toleranceM(TileKey::containing(48.5, 20.1, 14)) == 2);
+  CHECK(given.toleranceM(TileKey::containing(-33, 60, 8)) == Approx(25));
 }
 
 TEST_CASE("refinement beside fine data goes on across a pole") {

@@ -64,6 +64,25 @@ TEST_CASE("The worst point of a chord is found: over ten posts, and long ones th
 TEST_CASE("The worst point of a chord is found: beside a pole") {
   // North of the region lies more: keep chords, which bend polewards, inside.
   checkChords({88.0, 90.0, 0.0, 90.0}, 8, 20.0, 0.4, 8.0);
+  checkChords({-90.0, -88.0, 0.0, 90.0}, 8, 20.0, 0.4, 8.0);
+}
+
+// The last row's chords were once cut into 16,384 pieces each, in the south alone: minutes for a tile.
+TEST_CASE("A chord beside the south pole is no more work than beside the north pole") {
+  const PostSurface surface(12, roughGlobeM);
+  const auto cpuS = [&](double sign) {
+    SampleGrid grid;
+    const TileBounds cap = sign > 0 ? TileBounds{89.6, 90, 0, 90} : TileBounds{-90, -89.6, 0, 90};
+    fillGrid(surface, SampleBlock{cap, 1.0 / 12}, 1e9, grid);
+    const std::clock_t began = std::clock();
+    for (int i = 0; i < 200; ++i) {
+      ChordError found;
+      findChordError(grid, {sign * 89.95, 0.4 * i, 2000}, {sign * 89.99, 0.4 * i + 5, 2000}, 25, found);
+      CHECK(found.errorM > 0);
+    }
+    return static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+  };
+  CHECK(cpuS(-1) < 20 * cpuS(1) + 0.01);
 }
 
 TEST_CASE("A chord's bend in longitude counts where the ground is steep") {

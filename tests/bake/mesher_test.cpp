@@ -135,7 +135,7 @@ Side opposite(Side side) {
 }
 
 // Compares all four sides of a tile with its neighbours'; the number of points that were compared.
-size_t checkSides(const ElevationSurface& surface, const TileKey& key, double toleranceM) {
+size_t checkSides(const ElevationSurface& surface, const TileKey& key, const TileTolerance& toleranceM) {
   const MeshedTile tile = meshTile(surface, key, toleranceM);
   size_t compared = 0;
   for (const Side side : kSides) {
@@ -157,6 +157,10 @@ size_t checkSides(const ElevationSurface& surface, const TileKey& key, double to
     compared += own.size();
   }
   return compared;
+}
+
+size_t checkSides(const ElevationSurface& surface, const TileKey& key, double toleranceM) {
+  return checkSides(surface, key, [=](const TileKey&) { return toleranceM; });
 }
 
 double toleranceOf(int level) {
@@ -251,7 +255,13 @@ TEST_CASE("Neighbours of one level share their edges' lattice points and normals
                          {89.9, 10},
                          {-89.9, -100},
                          {84.5, 179.9}}) {
-    compared += checkSides(globe, TileKey::containing(p.latDeg, p.lonDeg, 6), 100.0);
+    const TileKey key = TileKey::containing(p.latDeg, p.lonDeg, 6);
+    compared += checkSides(globe, key, 100.0);
+    // The finer tile's tolerance holds for the edge.
+    for (const bool isOdd : {false, true})
+      checkSides(globe, key, [=](const TileKey& tile) {
+        return (tile.row() + tile.column() + tile.columns()) % 2 == (isOdd ? 1u : 0u) ? 100.0 : 20.0;
+      });
   }
   CHECK(compared > 400);
   for (int octant = 0; octant < kOctants; ++octant) {

@@ -9,6 +9,7 @@
 #include "bake/baked_ground.h"
 #include "pano/line_of_sight.h"
 #include "pano/peaks.h"
+#include "pano/run.h"
 #include "render/renderer.h"
 
 namespace eye {
@@ -113,6 +114,24 @@ TEST_CASE("Peaks: one close behind a ridge is not visible, one over it is and ha
       CHECK(peak.groundM == Approx(peak.trueM).epsilon(0.01));
     }
   }
+}
+
+TEST_CASE("The eye on a summit: off the gazetteer's place, and with its name") {
+  auto ground = GroundQuery::open(database());
+  REQUIRE(ground);
+  // Two posts beside the top of a cone whose sides fall by a half.
+  const Summit& north = kSummits[3];
+  EyeWish wish{north.latDeg + 2 * kPostDeg, north.lonDeg, {}, {}};
+  const auto beside = placeEye(wish, *ground);
+  wish.onSummit = true;
+  const auto onTop = placeEye(wish, *ground);
+  REQUIRE(beside);
+  REQUIRE(onTop);
+  CHECK(beside->altM == Approx(2000 - 0.5 * 2 * kNorthPostM + 2).margin(2));
+  CHECK(onTop->altM == Approx(2000 + 2).margin(3));
+  CHECK(onTop->latDeg == Approx(north.latDeg).margin(0.1 * kPostDeg));
+  CHECK_THAT(titleOf(*onTop, kSummits), Catch::StartsWith("North ") && Catch::EndsWith(" m"));
+  CHECK_THAT(titleOf({45.95, 7.9, 600}, kSummits), Catch::StartsWith("45.9500"));
 }
 
 TEST_CASE("Peaks: how far one is looked for grows with refraction") {

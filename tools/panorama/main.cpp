@@ -20,6 +20,7 @@ struct Arguments {
   std::string at, earth = "ellipsoid", depth = "range", logLevel = "warn";
   int widthPx = 8192;
   double verticalFovDeg = 40;
+  bool onSummit = false;
 };
 
 void declareOptions(CLI::App& app, Arguments& args) {
@@ -29,6 +30,7 @@ void declareOptions(CLI::App& app, Arguments& args) {
   app.add_option("--at", args.at, "The eye: lat,lon, with an altitude or with +height above the ground (default +2)")
       ->type_name("LAT,LON[,ALT|,+AGL]")
       ->required();
+  app.add_flag("--summit", args.onSummit, "Stand on the summit: on the highest ground uphill within 250 m of --at");
   app.add_option("--width", args.widthPx, "Pixels all round, 360 to 16384")->type_name("PX")->capture_default_str();
   app.add_option("--vertical-fov", args.verticalFovDeg, "Degrees from the lowest row to the highest, 1 to 90")
       ->type_name("DEG")
@@ -64,7 +66,7 @@ void declareOptions(CLI::App& app, Arguments& args) {
   app.set_version_flag("--version", versionLine("eyepoint-panorama"));
   app.footer(
       "Examples:\n"
-      "  eyepoint-panorama --terrain tatra.eyt --at 49.1795,20.0881 --peaks summits.csv --out rysy\n"
+      "  eyepoint-panorama --terrain tatra.eyt --at 49.1795,20.0881 --summit --peaks summits.csv --out rysy\n"
       "  eyepoint-panorama --terrain alps.eyt --at 46.5,8.1,+300 --width 16384 --out over_the_valley");
 }
 
@@ -85,6 +87,7 @@ Result<void> check(Arguments& args) {
   const Result<EyeWish> at = parseEyeWish(args.at);
   if (!at) return tl::unexpected(at.error());
   args.job.at = *at;
+  args.job.at.onSummit = args.onSummit;
   options.frame = panoramaFrame(args.widthPx, args.verticalFovDeg);
   options.earth = args.earth == "sphere" ? EarthShape::sphere : EarthShape::ellipsoid;
   options.depth = args.depth == "paper" ? DepthKind::paper : DepthKind::range;
