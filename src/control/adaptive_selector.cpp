@@ -97,8 +97,8 @@ std::optional<DepthMapChoice> AdaptiveSelector::dueTrial(double sum) {
   return best;
 }
 
-// Off, the size below, the size above, in turn, as far as there are such. Off first: it is what tells most about whether
-// a new size pays.
+// Off, the size below, the size above, in turn, as far as there are such. Off first: it is what tells most about
+// whether a new size pays.
 DepthMapChoice AdaptiveSelector::nextAlternative() {
   const size_t index = sizeIndex(held_);
   if (turn_ == kSmallersTurn && index == 0) turn_ = kLargersTurn;
