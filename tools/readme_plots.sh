@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # The README's plots and the numbers behind them, out of a report of the benchmark: assets/plots/NAME.svg and NAME.csv.
-#   tools/readme_plots.sh REPORT.json      such as: build/release/bin/eyepoint-bench all --terrain tatra.eyt --out report
+#   tools/readme_plots.sh REPORT.json      such as: build/release/bin/eyepoint-bench culling pareto panorama --terrain tatra.eyt --out report
 # then tools/readme_plots.sh report/report.json
 set -euo pipefail
 if [ $# -ne 1 ] || [ ! -f "$1" ]; then
-  echo "readme_plots.sh: give the report.json of a run of eyepoint-bench with the suites culling, flight and panorama" >&2
+  echo "readme_plots.sh: give the report.json of a run of eyepoint-bench with the suites culling, pareto and panorama" >&2
   exit 2
 fi
 report=$(realpath "$1")
@@ -26,5 +26,5 @@ take() {
   echo "assets/plots/$1.svg: $2"
 }
 take culling "mountains, 800x600"
-take flight "Chunks drawn too coarse"
+take pareto "Distances: relative error of the worst hundredth of the pixels, 800x600"
 take panorama "What is told against the truth"

@@ -13,7 +13,8 @@ constexpr double kNearM = 20000;
 // The passes that occlusion culling adds, by the names of their times.
 constexpr std::array<std::string_view, 3> kPasses{"cull_early", "depth_map", "cull_late"};
 
-// And those that draw, with it or without; uploads, read-back and overlay have nothing to do with the choice.
+// And those that draw, with it or without; uploads, read-back and overlay have nothing to do with the choice. Where
+// cost is CPU time they are in it, the same with either choice.
 constexpr std::array<std::string_view, 3> kDrawing{"scene", "early", "late"};
 
 // Middle of the finest resident tile's heights under the eye.

@@ -20,10 +20,8 @@ constexpr double kGreatestRadiusM = 2000;
 // Up to so much jitter the filter foresees as smoothly as it looks back (30 ms: 0.17 m of stutter at 150 m/s either
 // way), and each millisecond of delay would be one of transport delay. What is beyond it is waited for.
 constexpr double kForeseenJitterS = 0.05, kLongestDelayS = 0.1;
-// A host may say each pose several times, a simulation of 10 Hz six times at 60; the same for longer is standing still.
+// A host may say each pose several times; the same for longer is standing still.
 constexpr double kStandsStillS = 0.25;
-constexpr double kSaidAgainS = 0.12;  // or for so long and said again so often
-constexpr int kSaidAgain = 4;
 // Before the filter has seen so many it does not know the velocity.
 constexpr int kFewestObservations = 12;
 // Farther from the newest packet than twice what its age explains, and this, the filter is wrong.
@@ -192,8 +190,8 @@ DisplayedEye ViewpointTracker::eye() const {
 // By the filter; nothing where the newest pose is nearer to the truth: of an aircraft that stands, of one just heard
 // of, and where the filter is wrong.
 std::optional<Pose> ViewpointTracker::foreseen(double atS) const {
-  const double unchangedS = observedS_ - changedS_;
-  const bool standsStill = unchangedS > kStandsStillS || (unchangedS > kSaidAgainS && saidAgain_ >= kSaidAgain);
+  // So is one that was said again before the host fell silent: placed anew, then paused.
+  const bool standsStill = observedS_ - changedS_ > kStandsStillS || (isSilent() && saidAgain_ > 0);
   if (standsStill || sinceRestart_ < kFewestObservations) return std::nullopt;
   const Prediction prediction = predictor_.at(atS);
   const double ageS = std::abs(atS - changedS_);

@@ -11,6 +11,8 @@ namespace eye {
 namespace {
 
 constexpr double kThreeArcSecondsDeg = 3.0 / 3600;
+// Half a post: the palette's slopes and borders have that much detail between posts, finer texels would only blur it.
+constexpr double kPaletteDetailPosts = 0.5;
 // Texels up to so many times the source's detail are as good as it, at a quarter of the bytes of the next level.
 constexpr double kTexelSlack = 1.4;
 
@@ -130,8 +132,12 @@ bool BakePlan::hasImagery(const TileKey& key) const {
 // nothing beyond its border is wrong by more pixels than what is inside.
 bool BakePlan::wantsChildren(const TileKey& key, double geometricErrorM) const {
   if (key.level() >= maxLevel) return false;
-  const double besideDeg = key.level() < finest().meshLevel - kNoFinerBesideData ? cellHeightDeg(key.level()) : 0;
-  const std::vector<TileBounds> near = grown(key.bounds(), besideDeg);
+  std::vector<TileBounds> near{key.bounds()};
+  if (key.level() < finest().meshLevel - kNoFinerBesideData) {
+    const std::vector<TileBounds> around = grown(key.bounds(), cellHeightDeg(key.level()));
+    const double besideDeg = finestSpacingOfAny(*surface, around);
+    if (besideDeg > 0 && key.level() < sourceOf(besideDeg).meshLevel - kNoFinerBesideData) near = around;
+  }
   if (region && std::ranges::none_of(near, [&](const TileBounds& part) { return meets(*region, part); })) return false;
   if (wantsFinerImagery(key) && (!region || meets(*region, key.bounds()))) return true;
   const double spacingDeg = finestSpacingOfAny(*surface, near);
@@ -168,9 +174,9 @@ BakePlan makePlan(const ElevationSurface& surface, const ImageryMosaic* imagery,
   plan.maxLevel = std::min(options.maxLevel.value_or(finestLevel), kMaxLevel);
   for (const double spacingDeg : spacingsDeg) plan.sources.push_back(sourceDetail(spacingDeg, plan.maxLevel));
   if (options.errorM) {
-    const double finestErrorM = plan.finest().finestErrorM;
+    const double finestDeg = plan.finest().spacingDeg;
     for (SourceDetail& source : plan.sources) {
-      const bool isCoarse = source.finestErrorM > finestErrorM;
+      const bool isCoarse = source.spacingDeg > std::max(finestDeg, kThreeArcSecondsDeg);
       source.finestErrorM = isCoarse ? std::max(source.finestErrorM, *options.errorM) : *options.errorM;
     }
   }

@@ -211,17 +211,6 @@ bool meets(const GeoGrid& grid, const TileBounds& region, double turnDeg) {
          region.westDeg < grid.eastDeg() + grid.lonStepDeg / 2 + turnDeg;
 }
 
-// Over three levels, so that colours change little from one to the next.
-double yielded(double pixelDeg, const DetailAround& detail) {
-  constexpr double kFirst = 2, kWhole = 5;  // powers of two
-  const auto to = [&](double detailDeg) {
-    const double u = std::clamp((std::log2(pixelDeg / detailDeg) - kFirst) / (kWhole - kFirst), 0.0, 1.0);
-    return u * u * (3 - 2 * u);
-  };
-  const double u = detail.hereShare, share = u * u * (3 - 2 * u);
-  return share * to(detail.hereDeg) + (1 - share) * to(detail.aroundDeg);
-}
-
 constexpr double kTurnsDeg[] = {0.0, -360.0, 360.0};
 
 }  // namespace
@@ -263,15 +252,12 @@ double ImageryMosaic::finestPixelDeg(const TileBounds& region) const {
 }
 
 Result<std::vector<glm::vec4>> ImageryMosaic::sample(const TileBounds& region, double texelLatDeg, double texelLonDeg,
-                                                     const std::vector<LatLon>& points,
-                                                     const std::vector<DetailAround>& details) const {
+                                                     const std::vector<LatLon>& points) const {
   std::vector<glm::vec4> colours(points.size(), glm::vec4(0));
   bool open = true;
   for (size_t file = 0; file < impl_->files.size() && open; ++file) {
-    const GeoGrid& grid = impl_->files[file].grid;
-    const double all = details.size() == 1 ? yielded(grid.latStepDeg, details.front()) : 0;
     for (const double turnDeg : kTurnsDeg) {
-      if (!meets(grid, region, turnDeg)) continue;
+      if (!meets(impl_->files[file].grid, region, turnDeg)) continue;
       const Result<Patch> patch = impl_->read(file, region, turnDeg, texelLatDeg, texelLonDeg);
       if (!patch) return tl::unexpected(patch.error());
       if (patch->rows == 0) continue;
@@ -280,8 +266,7 @@ Result<std::vector<glm::vec4>> ImageryMosaic::sample(const TileBounds& region, d
         glm::vec4& colour = colours[i];
         if (colour.a < 0.999f) {
           const glm::vec4 own = at(*patch, points[i]);
-          const double yields = details.size() > 1 ? yielded(grid.latStepDeg, details[i]) : all;
-          const float share = (1 - colour.a) * own.a * static_cast<float>(1 - yields);
+          const float share = (1 - colour.a) * own.a;
           if (share > 0) {
             const glm::vec3 mixed = (glm::vec3(colour) * colour.a + glm::vec3(own) * share) / (colour.a + share);
             colour = glm::vec4(mixed, colour.a + share);

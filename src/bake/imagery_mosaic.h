@@ -21,13 +21,6 @@ struct ImageryFile {
   int colourBands = 3;  // 1 grey or 3
 };
 
-// How much detail, in degrees, something else could show at a point and within some distance around it, and the share
-// of that distance over which it is as fine as at the point. Pixels much coarser than that would only blur it, so they
-// yield: from four details on, and wholly at 32.
-struct DetailAround {
-  double hereDeg = 0, aroundDeg = 0, hereShare = 1;
-};
-
 // Thread: any number at once.
 class ImageryMosaic {
  public:
@@ -39,11 +32,9 @@ class ImageryMosaic {
   // Pixel height in degrees of the finest source that meets the region; 0 where none does.
   double finestPixelDeg(const TileBounds& region) const;
   // Colour (0..255) and opacity (0..1) of each point, which stands for a texel of the given size; `region` holds all of
-  // the points. Where sources leave it open, or yield, the opacity stays below 1.
-  // `details`: of each point, or one for all of them; empty: nothing else could be shown.
+  // the points. Where sources leave it open, the opacity stays below 1.
   Result<std::vector<glm::vec4>> sample(const TileBounds& region, double texelLatDeg, double texelLonDeg,
-                                        const std::vector<LatLon>& points,
-                                        const std::vector<DetailAround>& details = {}) const;
+                                        const std::vector<LatLon>& points) const;
 
  private:
   struct Impl;

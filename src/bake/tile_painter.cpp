@@ -23,46 +23,6 @@ Stencil stencilAt(const LatLon& point, double stepDeg) {
   return {stepDeg, std::min(stepDeg / shrink, 45.0), stepDeg * kMetresPerDegree};
 }
 
-// What the palette could show around each point, or one for all where that is the same everywhere. Far enough that the
-// border of fine posts, where coarse imagery begins to yield, is no edge.
-std::vector<DetailAround> paletteDetail(const ElevationSurface& surface, const TileBounds& bounds, double texelLatDeg,
-                                        const std::vector<LatLon>& points) {
-  constexpr double kFarthestDeg = 0.2;
-  const double finestDeg = surface.finestSpacingDeg(bounds);
-  if (finestDeg == 0) return {};
-  const auto stretchAt = [](double latDeg) { return 1 / std::max(std::cos(radFromDeg(latDeg)), 0.02); };
-  const auto detailIn = [&](const LatLon& point, double latDeg, double lonDeg) {
-    const std::vector<double> shown =
-        surface.spacingsDeg({std::max(point.latDeg - latDeg, -90.0), std::min(point.latDeg + latDeg, 90.0),
-                             std::max(point.lonDeg - lonDeg, -180.0), std::min(point.lonDeg + lonDeg, 180.0)});
-    const double coarsestDeg = shown.empty() ? 180 : std::ranges::max(shown);
-    return std::max(texelLatDeg, coarsestDeg * kPaletteDetailPosts);
-  };
-  const LatLon middle{(bounds.southDeg + bounds.northDeg) / 2, (bounds.westDeg + bounds.eastDeg) / 2};
-  const double poleward = std::max(std::abs(bounds.southDeg), std::abs(bounds.northDeg));
-  const double coarsestDeg = detailIn(middle, (bounds.northDeg - bounds.southDeg) / 2 + kFarthestDeg,
-                                      (bounds.eastDeg - bounds.westDeg) / 2 + kFarthestDeg * stretchAt(poleward));
-  if (coarsestDeg <= std::max(texelLatDeg, finestDeg * kPaletteDetailPosts)) return {{coarsestDeg, coarsestDeg}};
-
-  std::vector<DetailAround> details;
-  for (const LatLon& point : points) {
-    const auto within = [&](double share) {
-      const double awayDeg = share * kFarthestDeg;
-      return detailIn(point, awayDeg, awayDeg * stretchAt(point.latDeg));
-    };
-    DetailAround detail{within(0.001), within(1), 1};
-    if (detail.aroundDeg > detail.hereDeg) {
-      detail.hereShare = 0;
-      for (int halving = 1; halving <= 7; ++halving) {
-        const double further = detail.hereShare + std::ldexp(1.0, -halving);
-        if (within(further) <= detail.hereDeg) detail.hereShare = further;
-      }
-    }
-    details.push_back(detail);
-  }
-  return details;
-}
-
 double wrapped(double lonDeg) {
   return lonDeg >= 180 ? lonDeg - 360 : lonDeg < -180 ? lonDeg + 360 : lonDeg;
 }
@@ -117,8 +77,7 @@ Result<std::vector<uint8_t>> paintTile(const TileKey& key, int size, const Eleva
   std::vector<glm::vec4> colours(texels, glm::vec4(0));
   if (imagery != nullptr) {
     const double lonDeg = (bounds.eastDeg - bounds.westDeg) / (size - 1);
-    Result<std::vector<glm::vec4>> sampled =
-        imagery->sample(bounds, latDeg, lonDeg, centres, paletteDetail(surface, bounds, latDeg, centres));
+    Result<std::vector<glm::vec4>> sampled = imagery->sample(bounds, latDeg, lonDeg, centres);
     if (!sampled) return tl::unexpected(sampled.error());
     colours = std::move(*sampled);
   }

@@ -1,5 +1,4 @@
-// A tile's picture: from imagery, and from the palette where no imagery reaches or where it is
-// much coarser than the posts.
+// A tile's picture: from imagery, and from the palette where no imagery reaches.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +8,6 @@
 #include "bake/imagery_mosaic.h"
 
 namespace eye {
-
-// Half a post: the palette's slopes and borders have that much detail between posts, finer texels would only blur it.
-inline constexpr double kPaletteDetailPosts = 0.5;
 
 // A texel's height in degrees of latitude, and in metres.
 double texelDeg(int level, int textureSize);

@@ -40,7 +40,8 @@ void forEachNeeded(Chain& features, Visit&& visit) {
 // A family for graphics and, where a window is wanted, presentation.
 std::optional<uint32_t> findQueueFamily(const DeviceFacts& facts) {
   for (uint32_t i = 0; i < facts.queueFamilies.size(); ++i) {
-    if (!(facts.queueFamilies[i].queueFlags & vk::QueueFlagBits::eGraphics)) continue;
+    constexpr vk::QueueFlags kNeeded = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
+    if ((facts.queueFamilies[i].queueFlags & kNeeded) != kNeeded) continue;
     if (!facts.presents || (*facts.presents)[i]) return i;
   }
   return std::nullopt;
@@ -57,7 +58,8 @@ std::string whatLacks(const DeviceFacts& facts) {
   };
   forEachNeeded(facts.features, need);
   need(bool(facts.depthFormat & vk::FormatFeatureFlagBits::eDepthStencilAttachment), "a 32-bit float depth format");
-  need(findQueueFamily(facts).has_value(), facts.presents ? "a queue that draws and presents" : "a graphics queue");
+  need(findQueueFamily(facts).has_value(),
+       facts.presents ? "a queue that draws, computes and presents" : "a queue that draws and computes");
   return lacks;
 }
 

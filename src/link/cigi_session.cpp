@@ -11,7 +11,7 @@
 namespace eye::cigi {
 namespace {
 
-// More frames than this missing at once is a host that has begun anew.
+// More frames than this missing at once are not lost: the host has leapt ahead.
 constexpr uint32_t kMaxGap = 10'000;
 // A network that holds a datagram back for longer than this, in frames and in time, has lost it; a step back by more is
 // a host that begins anew.
@@ -57,6 +57,7 @@ void Session::reset() {
   questions_.clear();
   started_ = false;
   lateRun_ = 0;
+  framesWithoutEye_ = 0;
   control_ = {};
   seen_.fill(std::nullopt);
   ++resets_;

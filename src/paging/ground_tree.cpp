@@ -109,6 +109,7 @@ Result<void> GroundTree::descendTowards(const Ball& ball) {
       }
     }
     ancestors_.swap(descendants_);
+    if (ancestors_.empty()) return {};  // it touches boxes of inner nodes, and nothing in them
   }
 }
 

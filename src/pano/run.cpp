@@ -30,10 +30,14 @@ std::string titleOf(const Geodetic& eye, std::span<const Summit> summits) {
     return glm::distance(ecefFromGeodetic({summit.latDeg, summit.lonDeg, 0}),
                          ecefFromGeodetic({eye.latDeg, eye.lonDeg, 0}));
   };
+  const auto isAtHeightOf = [&](const Summit& summit) {
+    constexpr double kMostM = 150;  // what gazetteers and coarse posts are off, and a tower
+    return !summit.heightM || std::abs(eye.altM - *summit.heightM) < kMostM;
+  };
   std::string title;
   double nearestM = kSummitReachM;
   for (const Summit& summit : summits)
-    if (const double m = awayM(summit); m < nearestM) nearestM = m, title = summit.name + "   ";
+    if (const double m = awayM(summit); m < nearestM && isAtHeightOf(summit)) nearestM = m, title = summit.name + "   ";
   return title + fmt::format("{:.4f}\u00b0 {}, {:.4f}\u00b0 {}, {:.0f} m", std::abs(eye.latDeg),
                              eye.latDeg < 0 ? "S" : "N", std::abs(eye.lonDeg), eye.lonDeg < 0 ? "W" : "E", eye.altM);
 }

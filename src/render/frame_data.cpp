@@ -28,7 +28,8 @@ double smoothstep(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
-// Nothing of the sky shows through fog of less than 200 m of visibility, all of it through what is called mist or haze.
+// By the visibility at the eye. Nothing of the sky shows through fog of less than 200 m, all of it through what is
+// called mist or haze.
 double fogAt(double visibilityM) {
   return 1 - smoothstep(std::log(200), std::log(5000), std::log(std::max(visibilityM, 1.0)));
 }
@@ -96,7 +97,7 @@ shader::FrameData frameData(const FrameInput& input) {
   frame.sunLight.w = static_cast<float>(extinction);
   setLight(glm::dot(upEcef, sunEcef), density(eye.altM), kHazeShare * atGround * EYE_AIR_SCALE_M, frame);
   // In fog the whole sky is the fog's, and no sun or star shows.
-  const double fog = input.background ? 0 : fogAt(input.lighting.visibilityM);
+  const double fog = input.background ? 0 : fogAt(input.lighting.visibilityM / density(eye.altM));
   frame.airDepth.w = static_cast<float>(fog);
   frame.glow.w *= static_cast<float>(1 - fog);
   // Under clouds the sun shines neither on the ground nor into the haze.

@@ -92,42 +92,6 @@ TEST_CASE("A tile's picture has its south-west texel first and texels at its cor
   CHECK(texel(rgb, 64, 0, 63).r == Approx(20).margin(3));
 }
 
-// A blur of kilometres over posts of 90 m is worth less than what the palette makes of the posts.
-TEST_CASE("Coarse imagery yields to the palette over fine posts, and softly at their border") {
-  TestFolder folder;
-  const auto red = [](double, double) { return glm::vec4(250, 0, 0, 255); };
-  const auto imagery =
-      std::move(*ImageryMosaic::open({writePicture(folder.file("red.tif"), postGrid(40, 10, 0.1, 200, 200), red)}));
-  const auto surface = std::move(
-      *ElevationMosaic::open({writeHeights(folder.file("fine.tif"), postGrid(49, 20, 1.0 / 1200, 1201, 1201), hillsM),
-                              writeHeights(folder.file("coarse.tif"), postGrid(45, 15, 1.0 / 12, 121, 121), hillsM)}));
-  constexpr int kSize = 64;
-  const auto painted = [&](double latDeg, double lonDeg, int level) {
-    return paintTile(TileKey::containing(latDeg, lonDeg, level), kSize, *surface, imagery.get()).value();
-  };
-  const auto middle = [](const std::vector<uint8_t>& rgb) { return texel(rgb, kSize, kSize / 2, kSize / 2); };
-  // Level 4 has texels of 0.09 degrees, as coarse as the picture's pixels: nothing yields there.
-  CHECK(middle(painted(49.5, 20.5, 4)).r == Approx(250).margin(1));
-  CHECK(middle(painted(47.0, 17.0, 10)).r == Approx(250).margin(1));
-  CHECK(middle(painted(49.5, 20.5, 11)).r < 150);
-  // Westwards out of the fine posts, over some tiles, texel by texel.
-  float reddest = 0, leap = 0;
-  std::optional<float> last;
-  const TileKey first = TileKey::containing(49.5, 20.4, 9);
-  const double widthDeg = first.bounds().eastDeg - first.bounds().westDeg;
-  for (double lonDeg = 20.4; lonDeg > 19.4; lonDeg -= widthDeg) {
-    const auto rgb = painted(49.5, lonDeg, 9);
-    for (int i = kSize - 1; i >= 0; --i) {
-      const glm::vec3 colour = texel(rgb, kSize, i, kSize / 2);
-      const float excess = colour.r - colour.g;
-      if (last) leap = std::max(leap, std::abs(excess - *last));
-      last = excess, reddest = std::max(reddest, excess);
-    }
-  }
-  CHECK(reddest == Approx(250).margin(1));
-  CHECK(leap < 40);
-}
-
 TEST_CASE("Neighbours' pictures agree along their common edge, across the date line and at the poles") {
   TestFolder folder;
   const auto surface = std::move(*ElevationMosaic::open(

@@ -160,6 +160,22 @@ TEST_CASE("the dome's part holds every ray of the view") {
   CHECK(parts > 500);  // not all of them whole rounds
 }
 
+TEST_CASE("fog lies on the ground: from a height the sky over it is that of a clear day") {
+  const BothWays both = makeBoth();
+  if (!both) return;
+  for (const double heightM : {40e3, 2000e3}) {
+    const Pose pose{{49.0, 20.0, heightM}, 0, 30, 0};
+    const auto foggy = both.byVertex->drawFrame(lit(pose, 40, 10, 300));
+    REQUIRE(foggy.has_value());
+    const std::vector<uint8_t> above(foggy->rgba.begin(),
+                                     foggy->rgba.begin() + 4 * 320);  // the next frame has its place
+    const auto clear = both.byVertex->drawFrame(lit(pose, 40, 10, 60000));
+    REQUIRE(clear.has_value());
+    INFO(heightM << " m");
+    CHECK(differenceOf(above, std::span<const uint8_t>(clear->rgba).first(4 * 320)).greatest <= 12);
+  }
+}
+
 TEST_CASE("in fog neither the horizon shows nor the sun, nor ground that is lit elsewhere") {
   const BothWays both = makeBoth();
   if (!both) return;

@@ -116,15 +116,21 @@ TEST_CASE("what a device lacks is named") {
 
   facts = card();
   facts.queueFamilies.pop_back();
-  CHECK(chooseTraits(facts).lacks == "a graphics queue");
+  CHECK(chooseTraits(facts).lacks == "a queue that draws and computes");
+}
+
+TEST_CASE("a queue that draws and cannot compute is passed over") {
+  DeviceFacts facts = card();
+  facts.queueFamilies.insert(facts.queueFamilies.begin(), family(Queue::eGraphics, 36));
+  CHECK(chooseTraits(facts).queueFamily == 2);
 }
 
 TEST_CASE("the queue that presents is taken where there is a window") {
   DeviceFacts facts = card();
-  facts.queueFamilies.push_back(family(Queue::eGraphics, 0));
+  facts.queueFamilies.push_back(family(Queue::eGraphics | Queue::eCompute, 0));
   facts.presents = std::vector{true, false, true};
   CHECK(chooseTraits(facts).queueFamily == 2);
   CHECK(chooseTraits(facts).timestampBits == 0);
   facts.presents = std::vector{true, false, false};
-  CHECK(chooseTraits(facts).lacks == "a queue that draws and presents");
+  CHECK(chooseTraits(facts).lacks == "a queue that draws, computes and presents");
 }

@@ -94,6 +94,11 @@ TEST_CASE("each sampler draws its own picture, the device's is one of them") {
   for (const TextureFilter filter : {TextureFilter::device, TextureFilter::nearest, TextureFilter::bilinear,
                                      TextureFilter::trilinear, TextureFilter::anisotropic}) {
     const auto renderer = makeRenderer(options(1, filter));
+    if (!renderer && filter == TextureFilter::anisotropic) {
+      WARN("this device has no anisotropic filter");
+      kept.push_back({});
+      continue;
+    }
     if (!renderer) return;
     if (filter != TextureFilter::device) CHECK(renderer->textureFilter() == filter);
     CHECK(renderer->textureFilter() != TextureFilter::device);
@@ -105,8 +110,10 @@ TEST_CASE("each sampler draws its own picture, the device's is one of them") {
   }
   CHECK((kept[1].rgba != kept[2].rgba));
   CHECK((kept[2].rgba != kept[3].rgba));
-  CHECK((kept[3].rgba != kept[4].rgba));
+  if (!kept[4].rgba.empty()) {
+    CHECK((kept[3].rgba != kept[4].rgba));
+    CHECK((kept[1].depth == kept[4].depth));
+  }
   CHECK((kept[0].rgba == kept[2].rgba || kept[0].rgba == kept[3].rgba || kept[0].rgba == kept[4].rgba));
   CHECK((kept[1].depth == kept[3].depth));
-  CHECK((kept[1].depth == kept[4].depth));
 }
