@@ -25,8 +25,8 @@ constexpr size_t kDynamic = 2, kFixedMap = 3;  // of kSchemes
 // Without culling the whole horizon is resident: no scheme is to be short of memory.
 constexpr uint64_t kCacheMiB = 512;
 // Frames before those that count: chunks arrive in the first, visibility settles in the next two. The selector makes
-// its first comparison after 60 frames and holds a size for 30, so where the ground or the height changes it is given
-// more.
+// its first comparison after some 20 frames and holds a size for 30, so where the ground or the height changes it is
+// given more.
 constexpr int kSettleFrames = 3, kSelectorFrames = 100;
 // Multiples of the schemes: each comes first, second and so on equally often.
 constexpr int kFrames = 12, kQuickFrames = 4;

@@ -42,7 +42,7 @@ struct FloorView {
 double floorModelMs(uint64_t triangles, uint64_t terrainPx, uint64_t picturePx);
 
 // Frames of each picture, and before them of the view: chunks arrive in the first, visibility settles in the next two,
-// and the selector makes its first comparison after 60.
+// and the selector makes its first comparison after some 20.
 struct FloorEffort {
   int frames = 24, settle = 100;
 };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kViews = 3, kQuickViews = 1;
 constexpr int kPicturesASide = 8;  // 64 samples
-constexpr ParetoEffort kQuickEffort{.frames = 8, .settle = 3, .selectorFrames = 12};
+constexpr ParetoEffort kQuickEffort{.frames = 8, .settle = 3, .selectorFrames = 40};
 
 }  // namespace
 
