@@ -22,7 +22,7 @@ bool beats(const ParetoPoint& a, const ParetoPoint& b) {
   EYE_CHECK(a.errors.size() == b.errors.size());
   for (size_t i = 0; i < a.errors.size(); ++i)
     if (a.errors[i] > b.errors[i]) return false;
-  return a.cost + a.spread < b.cost - b.spread;
+  return a.cost + a.spread < (1 - kLeastGain) * (b.cost - b.spread);
 }
 
 std::vector<bool> onFront(std::span<const ParetoPoint> points) {

@@ -12,7 +12,10 @@ struct ParetoPoint {
   std::vector<double> errors;  // the same ones of every point; less is better
 };
 
-// None of its errors is greater, and it costs less by more than the spread of the two.
+// Less than this share of the cost is not worth a choice: the selector may spend as much on finding out what to choose,
+// and where it has, a fixed choice of the same is that much cheaper.
+inline constexpr double kLeastGain = 0.02;
+// None of its errors is greater, and it costs less by more than that and the spread of the two.
 bool beats(const ParetoPoint& a, const ParetoPoint& b);
 
 // By point: no other beats it.

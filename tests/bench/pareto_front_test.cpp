@@ -11,13 +11,20 @@ TEST_CASE("on the front is what none beats in cost and in every error") {
 }
 
 TEST_CASE("within the spread of the measurement nothing is beaten") {
-  std::vector<ParetoPoint> points{{1.00, 0.01, {2}}, {1.03, 0.01, {2}}};
+  std::vector<ParetoPoint> points{{1.00, 0.01, {2}}, {1.05, 0.01, {2}}};
   CHECK(onFront(points) == std::vector<bool>{true, false});
   points[0].spread = 0.03;
   CHECK(onFront(points) == std::vector<bool>{true, true});
   points[1].errors = {1.9};  // better, and dearer: both
   points[0].spread = 0;
   CHECK(onFront(points) == std::vector<bool>{true, true});
+}
+
+TEST_CASE("what is cheaper by less than a choice is worth beats nothing") {
+  std::vector<ParetoPoint> points{{1.00, 0, {2}}, {1.015, 0, {2}}};
+  CHECK(onFront(points) == std::vector<bool>{true, true});
+  points[1].cost = 1.025;
+  CHECK(onFront(points) == std::vector<bool>{true, false});
 }
 
 TEST_CASE("a median's spread is that of a box plot's notch") {
