@@ -15,7 +15,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Times of the same work on the same machine differ by as much, once divided by the speed reference: caches and memory
-// are shared with whatever else runs, and the reference uses them otherwise than a frame does.
+// are shared with whatever else runs, and the reference uses them otherwise than a frame does. A machine that is quiet
+// differs by a tenth from one run to the next; what runs this is not one machine.
 constexpr double kTimeBand = 0.4;
 // What occlusion culling leaves hangs on drawn depths, whose last bits differ between processors.
 constexpr double kPixelBand = 0.02;
