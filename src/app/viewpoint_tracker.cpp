@@ -127,7 +127,6 @@ void ViewpointTracker::observePose(const Pose& pose, double atS) {
   const Vec3d eyeEcefM = ecefFromGeodetic(pose.position);
   const bool first = observations_ == 0;
   if (first || pose != pose_) changedS_ = atS;
-  saidAgain_ = !first && pose == pose_ ? saidAgain_ + 1 : 0;
   jumped_ = jumped_ || first;
   ++observations_;
   pose_ = pose;
@@ -191,7 +190,7 @@ DisplayedEye ViewpointTracker::eye() const {
 // of, and where the filter is wrong.
 std::optional<Pose> ViewpointTracker::foreseen(double atS) const {
   // So is one that was said again before the host fell silent: placed anew, then paused.
-  const bool standsStill = observedS_ - changedS_ > kStandsStillS || (isSilent() && saidAgain_ > 0);
+  const bool standsStill = observedS_ - changedS_ > kStandsStillS || (isSilent() && observedS_ > changedS_);
   if (standsStill || sinceRestart_ < kFewestObservations) return std::nullopt;
   const Prediction prediction = predictor_.at(atS);
   const double ageS = std::abs(atS - changedS_);

@@ -77,7 +77,6 @@ class ViewpointTracker {
   Pose pose_;
   Vec3d eyeEcefM_{};
   double observedS_ = 0, changedS_ = 0;  // when it was true; when the pose was another one last
-  int saidAgain_ = 0;                    // observations since then
   // Of a live host, from its sample: see there.
   double atS_ = 0, arrivedS_ = 0, carryOnS_ = 0;
   bool stampedByHost_ = false;

@@ -54,6 +54,7 @@ void setLight(double rise, double air, double hazeDepth, shader::FrameData& fram
   const double column = air * EYE_LEVEL_COLUMN / (EYE_LEVEL_COLUMN * std::max(rise, 0.0) + 1);
   const glm::dvec3 through = glm::sqrt(glm::exp(-kAirDepth * column * 0.5));
   frame.sunLight = vec4(vec3(0.92 * through), frame.sunLight.w);
+  // w as skyLit of shaders/shared/atmosphere.h.
   frame.skyLight = vec4(0.36, 0.39, 0.45, std::lerp(EYE_NIGHT_SKY, 1.0, smoothstep(-0.25, 0.10, rise)));
 
   const double low = (1 - smoothstep(0.0, 0.35, std::abs(rise))) * air;

@@ -275,6 +275,20 @@ TEST_CASE("a host that falls silent: the eye goes on a fifth of a second, then w
   }
 }
 
+TEST_CASE("a host that stops its aircraft and falls silent: the eye settles where it was told last") {
+  Followed followed;
+  ViewpointTracker& tracker = followed.tracker;
+  const FlightPath path = flightPath();
+  double nowS = 800;
+  for (int i = 0; i < 185; ++i, nowS += 1 / 60.0) {  // the last pose five times more, less than standing still takes
+    followed.hear(path.poseAt(std::min(i, 179) / 60.0), nowS);
+    followed.frame(nowS);
+  }
+  for (int i = 0; i < 60; ++i, nowS += 1 / 60.0) followed.frame(nowS);
+  CHECK(tracker.eye().silent);
+  CHECK(tracker.eye().pose == followed.host.pose);
+}
+
 TEST_CASE("an aircraft that its host's rates carry on goes a fifth of a second without a message, and no farther") {
   for (const HostDelayMode mode : {HostDelayMode::automatic, HostDelayMode::off, HostDelayMode::fixed}) {
     Options options = withDelay(mode);
