@@ -76,7 +76,7 @@ DeviceTraits chooseTraits(const DeviceFacts& facts) {
   traits.msPerTick = double(limits.timestampPeriod) * 1e-6;
 
   traits.isCpu = facts.properties.deviceType == vk::PhysicalDeviceType::eCpu;
-  traits.reducesDepthOnHost = traits.binsBeforeRastering = traits.isCpu;
+  traits.cullsOnHost = traits.binsBeforeRastering = traits.isCpu;
   traits.blendsMipLevels = !traits.isCpu;
   if (facts.features.get<vk::PhysicalDeviceFeatures2>().features.samplerAnisotropy)
     traits.mostAnisotropy = std::min(kAnisotropy, limits.maxSamplerAnisotropy);
@@ -100,8 +100,8 @@ DeviceFeatures featuresToEnable(const DeviceTraits& traits) {
 
 std::string choicesText(const DeviceTraits& traits) {
   const char* imagery = traits.drawsAnisotropic ? "anisotropic" : traits.blendsMipLevels ? "trilinear" : "bilinear";
-  return fmt::format("imagery {}, depth maps reduced by {}, {} samples a pixel at most", imagery,
-                     traits.reducesDepthOnHost ? "the host" : "compute shaders",
+  return fmt::format("imagery {}, culling by {}, {} samples a pixel at most", imagery,
+                     traits.cullsOnHost ? "the host" : "compute shaders",
                      traits.sampleCounts & vk::SampleCountFlagBits::e4 ? 4 : 1);
 }
 

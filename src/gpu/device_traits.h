@@ -29,7 +29,7 @@ struct DeviceTraits {
 
   // A CPU: what it draws takes the time of the cores that also prepare frames.
   bool isCpu = false;
-  bool reducesDepthOnHost = false;   // plain code reduces a depth map faster than its compute shaders
+  bool cullsOnHost = false;          // plain code reduces depth maps and tests clusters faster than compute shaders
   bool binsBeforeRastering = false;  // draws of a pass wait for each other unless a time stamp parts them
   bool blendsMipLevels = true;       // by default: dear on a CPU
   float mostAnisotropy = 1;          // samples along a texel's footprint that --sampler anisotropic takes; 1: it cannot

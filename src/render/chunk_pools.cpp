@@ -74,7 +74,8 @@ std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uin
   return plan;
 }
 
-Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize) {
+Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize,
+                                                       bool cullsOnHost) {
   const uint32_t maxLayers = gpu.traits.mostTextureLayers;
   uint64_t layerBytes = mipChainBytes(textureSize);
   // What a layer takes on the device is known when the image is made: the second round keeps to it.
@@ -85,7 +86,7 @@ Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uin
     const uint64_t meshBytes =
         plan->vertices * sizeof(ChunkVertex) + plan->indices * sizeof(uint16_t) + plan->clusters * kClusterBytes;
     if (textures.bytes + meshBytes <= budgetBytes) {
-      return std::unique_ptr<ChunkPools>(new ChunkPools(gpu, *plan, std::move(textures), textureSize));
+      return std::unique_ptr<ChunkPools>(new ChunkPools(gpu, *plan, std::move(textures), textureSize, cullsOnHost));
     }
     layerBytes = textures.bytes / plan->layers + 1;
   }
@@ -96,7 +97,7 @@ Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uin
                   budgetBytes >> 20, textureSize, leastMib + 1));
 }
 
-ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize)
+ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize, bool cullsOnHost)
     : gpu_(gpu),
       textureSize_(textureSize),
       chainBytes_(mipChainBytes(textureSize)),
@@ -110,10 +111,11 @@ ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage text
       createBuffer(gpu, plan.vertices * sizeof(ChunkVertex), Use::eVertexBuffer | Use::eTransferDst, MemoryUse::device);
   indexBuffer_ =
       createBuffer(gpu, plan.indices * sizeof(uint16_t), Use::eIndexBuffer | Use::eTransferDst, MemoryUse::device);
+  const MemoryUse clusterUse = cullsOnHost ? MemoryUse::readBack : MemoryUse::device;
   clusterBuffer_ = createBuffer(gpu, plan.clusters * sizeof(shader::ClusterRecord),
-                                Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc, MemoryUse::device);
+                                Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc, clusterUse);
   visibleBuffer_ =
-      createBuffer(gpu, plan.clusters * sizeof(uint32_t), Use::eStorageBuffer | Use::eTransferDst, MemoryUse::device);
+      createBuffer(gpu, plan.clusters * sizeof(uint32_t), Use::eStorageBuffer | Use::eTransferDst, clusterUse);
   const uint64_t stagingBytes = std::max(kStagingBytes, 2 * chainBytes_ + (uint64_t{4} << 20));
   staging_ = createBuffer(gpu, stagingBytes, Use::eTransferSrc, MemoryUse::upload);
   runOnce(gpu, [this](const vk::raii::CommandBuffer& commands) {
@@ -184,10 +186,7 @@ std::optional<GpuChunk> ChunkPools::upload(const LoadedChunk& chunk) {
       {stage(chunk.mesh.vertices.data(), vertexBytes), made->vertexOffset * sizeof(ChunkVertex), vertexBytes});
   indexCopies_.push_back(
       {stage(chunk.mesh.indices.data(), indexBytes), made->firstIndex * sizeof(uint16_t), indexBytes});
-  records_.clear();
-  for (const ChunkCluster& cluster : chunk.mesh.clusters) records_.push_back(recordOf(cluster, made->firstIndex));
-  clusterCopies_.push_back(
-      {stage(records_.data(), clusterBytes), made->clusterOffset * sizeof(shader::ClusterRecord), clusterBytes});
+  putClusters(chunk.mesh.clusters, *made);
   if (made->textureLayer < 0) return made;
 
   const auto layer = static_cast<uint32_t>(made->textureLayer);
@@ -218,6 +217,20 @@ bool ChunkPools::isPending(const GpuChunk& chunk) const {
                      [place](const vk::BufferCopy& copy) { return copy.dstOffset == place; });
 }
 
+void ChunkPools::putClusters(std::span<const ChunkCluster> clusters, const GpuChunk& made) {
+  records_.clear();
+  for (const ChunkCluster& cluster : clusters) records_.push_back(recordOf(cluster, made.firstIndex));
+  if (clusterBuffer_.mapped != nullptr) {
+    std::ranges::copy(records_, clusterBuffer_.as<shader::ClusterRecord>().begin() + made.clusterOffset);
+    // The last owner's visibility is not the new one's.
+    std::ranges::fill(visibleBuffer_.as<uint32_t>().subspan(made.clusterOffset, made.clusterCount), 0u);
+    return;
+  }
+  constexpr uint64_t kRecordBytes = sizeof(shader::ClusterRecord);
+  const size_t bytes = records_.size() * kRecordBytes;
+  clusterCopies_.push_back({stage(records_.data(), bytes), made.clusterOffset * kRecordBytes, bytes});
+}
+
 uint64_t ChunkPools::stage(const void* data, size_t bytes) {
   const uint64_t offset = stagedBytes_;
   std::memcpy(staging_.mapped + offset, data, bytes);
@@ -234,8 +247,7 @@ void ChunkPools::recordUploads(const vk::raii::CommandBuffer& commands) {
   if (vertexCopies_.empty()) return;
   commands.copyBuffer(*staging_.buffer, *vertexBuffer_.buffer, vertexCopies_);
   commands.copyBuffer(*staging_.buffer, *indexBuffer_.buffer, indexCopies_);
-  commands.copyBuffer(*staging_.buffer, *clusterBuffer_.buffer, clusterCopies_);
-  // The last owner's visibility is not the new one's.
+  if (!clusterCopies_.empty()) commands.copyBuffer(*staging_.buffer, *clusterBuffer_.buffer, clusterCopies_);
   for (const vk::BufferCopy& copy : clusterCopies_) {
     constexpr vk::DeviceSize kRecord = sizeof(shader::ClusterRecord);
     commands.fillBuffer(*visibleBuffer_.buffer, copy.dstOffset / kRecord * sizeof(uint32_t),

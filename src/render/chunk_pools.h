@@ -23,13 +23,15 @@ std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uin
 
 class ChunkPools {
  public:
-  // usage: the budget is too small (says how much it needs). Throws vk::SystemError.
-  static Result<std::unique_ptr<ChunkPools>> create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize);
+  // `cullsOnHost`: clusters and their visibility are mapped, and written at once. usage: the budget is too small (says
+  // how much it needs). Throws vk::SystemError.
+  static Result<std::unique_ptr<ChunkPools>> create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize,
+                                                    bool cullsOnHost);
 
   // As GpuStore says.
   bool hasRoomFor(std::span<const LoadedChunk> chunks);
   bool wouldHelp(const GpuChunk& chunk) const { return !onlyLayersShort_ || chunk.textureLayer >= 0; }
-  // Copies into staging memory; on the GPU with the next recordUploads.
+  // Copies into staging memory; on the GPU with the next recordUploads. Nothing that is drawn may be in flight.
   std::optional<GpuChunk> upload(const LoadedChunk& chunk);
   void release(const GpuChunk& chunk);
   uint64_t bytesResident() const;
@@ -48,11 +50,12 @@ class ChunkPools {
   const GpuImage& textures() const { return textures_; }
 
  private:
-  ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize);
+  ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize, bool cullsOnHost);
   std::optional<GpuChunk> allocate(const LoadedChunk& chunk);
   void giveBack(const GpuChunk& chunk);
   void flush();
   bool isPending(const GpuChunk& chunk) const;
+  void putClusters(std::span<const ChunkCluster> clusters, const GpuChunk& made);
   uint64_t stage(const void* data, size_t bytes);
 
   const GpuDevice& gpu_;

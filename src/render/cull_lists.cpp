@@ -30,7 +30,7 @@ bool grow(const GpuDevice& gpu, size_t count, size_t elementBytes, vk::BufferUsa
 
 }  // namespace
 
-CullLists::CullLists(const GpuDevice& gpu, bool pyramidOnHost) : pyramidOnHost_(pyramidOnHost) {
+CullLists::CullLists(const GpuDevice& gpu, bool onHost) : onHost_(onHost) {
   params_ = createBuffer(gpu, sizeof(shader::CullParams), Use::eStorageBuffer, MemoryUse::upload);
   params_.as<shader::CullParams>()[0] = {};
   reserve(gpu, {}, {1, 1}, {1, 1});
@@ -59,15 +59,16 @@ bool CullLists::reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, 
       return createBuffer(gpu, candidateCapacity_ * elementBytes, Use::eStorageBuffer | usage, use);
     };
     candidates_ = make(sizeof(shader::CullCandidate), {}, MemoryUse::upload);
-    early_ = make(sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, MemoryUse::device);
-    late_ = make(sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, MemoryUse::device);
+    const MemoryUse commands = onHost_ ? MemoryUse::upload : MemoryUse::device;
+    early_ = make(sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, commands);
+    late_ = make(sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, commands);
     fates_ = make(sizeof(uint32_t), {}, MemoryUse::readBack);
   }
   const auto pixels = static_cast<size_t>(picturePx.x) * static_cast<size_t>(picturePx.y);
   made |= grow(gpu, pixels, sizeof(float), Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc,
-               pyramidOnHost_ ? MemoryUse::readBack : MemoryUse::device, depthCapacity_, depth_);
+               onHost_ ? MemoryUse::readBack : MemoryUse::device, depthCapacity_, depth_);
   made |= grow(gpu, pyramidLayout(mapPx).texels, sizeof(float), Use::eStorageBuffer | Use::eTransferSrc,
-               pyramidOnHost_ ? MemoryUse::upload : MemoryUse::device, pyramidCapacity_, pyramid_);
+               onHost_ ? MemoryUse::upload : MemoryUse::device, pyramidCapacity_, pyramid_);
   const auto sides = static_cast<size_t>(mapPx.x) + static_cast<size_t>(mapPx.y);
   if (grow(gpu, sides, sizeof(glm::ivec2), Use::eStorageBuffer, MemoryUse::upload, spansCapacity_, pixelSpans_)) {
     made = true;
@@ -126,8 +127,24 @@ void CullLists::write(std::span<const ChunkDraw> draws, size_t byVertex, const V
   std::copy(layout.offset.begin(), layout.offset.end(), params.levelOffset);
 }
 
-void CullLists::buildPyramid() {
-  hostPyramid_.build(depth_.as<const float>(), params().picturePx, params().mapPx, pyramid_.as<float>());
+HostCull CullLists::hostCull(const ChunkPools& pools, const GpuBuffer& commands) const {
+  return {.params = params(),
+          .chunks = chunks_.as<const shader::CullChunk>().first(chunkCount_),
+          .candidates = candidates_.as<const shader::CullCandidate>().first(candidateCount_),
+          .clusters = pools.clusterBuffer().as<const shader::ClusterRecord>(),
+          .visible = pools.visibleBuffer().as<uint32_t>(),
+          .commands = commands.as<shader::DrawCommand>(),
+          .fates = fates_.as<uint32_t>()};
+}
+
+void CullLists::cullEarly(const ChunkPools& pools) {
+  eye::cullEarly(hostCull(pools, early_));
+}
+
+void CullLists::cullLate(const ChunkPools& pools) {
+  const auto pyramid = pyramid_.as<float>();
+  hostPyramid_.build(depth_.as<const float>(), params().picturePx, params().mapPx, pyramid);
+  eye::cullLate(hostCull(pools, late_), pyramid);
 }
 
 CullCounts CullLists::counts() const {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "gpu/memory.h"
+#include "render/chunk_pools.h"
 #include "render/depth_pyramid.h"
+#include "render/host_cull.h"
 #include "render/renderer.h"
 #include "shared/cull_types.h"
 
@@ -11,8 +13,8 @@ namespace eye {
 
 class CullLists {
  public:
-  // `pyramidOnHost`: the depth map is read and the pyramid written by the CPU, see buildPyramid.
-  CullLists(const GpuDevice& gpu, bool pyramidOnHost);
+  // `onHost`: the CPU culls, see cullEarly and cullLate; else the shaders do, see CullPass.
+  CullLists(const GpuDevice& gpu, bool onHost);
   // Whether buffers and dispatches for so much are within the device's limits.
   static bool fits(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx);
   // Makes room; nothing may be in flight. True where a buffer was made anew: descriptors are to be written again.
@@ -21,11 +23,13 @@ class CullLists {
   // the first `byVertex` have haze by vertex.
   void write(std::span<const ChunkDraw> draws, size_t byVertex, const View& view, const glm::mat4& clipFromEcef,
              glm::ivec2 mapPx, bool frozen);
-  // With pyramidOnHost, when the depth has been copied: what CullPass::recordDepthPyramid does elsewhere.
-  void buildPyramid();
+  // With onHost, before the early draws and when their depth has been copied: what else the passes of CullPass do. The
+  // pools' clusters must be mapped.
+  void cullEarly(const ChunkPools& pools);
+  void cullLate(const ChunkPools& pools);
   // Of the frame that has just finished.
   CullCounts counts() const;
-  bool pyramidOnHost() const { return pyramidOnHost_; }
+  bool onHost() const { return onHost_; }
 
   int longestSpanPx() const { return longestSpanPx_; }  // pixels that a texel of the map touches along an axis
   uint32_t chunkCount() const { return chunkCount_; }
@@ -45,9 +49,10 @@ class CullLists {
   const GpuBuffer& pixelSpansBuffer() const { return pixelSpans_; }
 
  private:
+  HostCull hostCull(const ChunkPools& pools, const GpuBuffer& commands) const;
   void writePixelSpans(glm::ivec2 picturePx, glm::ivec2 mapPx);
 
-  bool pyramidOnHost_;
+  bool onHost_;
   DepthPyramid hostPyramid_;
   size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0, spansCapacity_ = 0;
   uint32_t chunkCount_ = 0, candidateCount_ = 0, candidatesByVertex_ = 0;

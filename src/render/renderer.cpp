@@ -43,6 +43,7 @@ struct Renderer::Impl {
   std::vector<ChunkDraw> draws;  // of the frame, in two parts by haze
   std::vector<PassTime> passTimes;
   std::vector<uint8_t> rgba;  // the picture read back, where the window's pixels are in another order
+  double hostEarlyMs = 0;     // of the frame's early culling, where the CPU does it
   bool drawn = false;         // the colour target holds a whole picture, in usageCopySource
 
   vk::Format colourFormat() const;
@@ -51,7 +52,8 @@ struct Renderer::Impl {
   void record(const FrameInput& input, const DrawCounts& counts, bool culls, std::optional<uint32_t> shown);
   void drawAir(const FrameInput& input);
   void recordScene(const FrameInput& input, const DrawCounts& counts);
-  void buildPyramidOnHost();
+  void cullEarly();
+  void cullLate();
   void recordCulledScene(const FrameInput& input, const DrawCounts& counts);
   void submitAndWait();
   std::span<const uint8_t> pictureRgba();
@@ -75,9 +77,8 @@ bool drawsSamples(const GpuDevice& gpu, vk::SampleCountFlagBits samples) {
   return static_cast<bool>(gpu.traits.sampleCounts & samples);
 }
 
-bool pyramidOnHost(const RendererOptions& options, const GpuDevice& gpu) {
-  return options.depthPyramid == DepthPyramidBy::host ||
-         (options.depthPyramid == DepthPyramidBy::device && gpu.traits.reducesDepthOnHost);
+bool cullsOnHost(const RendererOptions& options, const GpuDevice& gpu) {
+  return options.cullBy == CullBy::host || (options.cullBy == CullBy::device && gpu.traits.cullsOnHost);
 }
 
 }  // namespace
@@ -111,7 +112,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     if (options.filter == TextureFilter::anisotropic && device.traits.mostAnisotropy <= 1)
       return fail(ErrorKind::unsupported,
                   fmt::format("{} has no anisotropic filter: give --sampler trilinear", device.description.name));
-    auto pools = ChunkPools::create(device, options.gpuBudgetBytes, options.textureSize);
+    auto pools = ChunkPools::create(device, options.gpuBudgetBytes, options.textureSize, cullsOnHost(options, device));
     if (!pools) return tl::unexpected(pools.error());
     impl->pools = std::move(*pools);
 
@@ -128,7 +129,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
                                                            .bend = options.bend});
     if (options.samples > 1) impl->farthest = std::make_unique<FarthestSample>(device, impl->cache);
     impl->lists = std::make_unique<DrawLists>(device);
-    impl->cullLists = std::make_unique<CullLists>(device, pyramidOnHost(options, device));
+    impl->cullLists = std::make_unique<CullLists>(device, cullsOnHost(options, device));
     impl->cull = std::make_unique<CullPass>(device, impl->cache);
     impl->cull->bind(device, *impl->pools, *impl->cullLists);
     runOnce(device, [&](const vk::raii::CommandBuffer& commands) { impl->cull->recordWarmUp(commands); });
@@ -292,13 +293,31 @@ void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& coun
   timestamps->mark(commands, "scene");
 }
 
-// Ends the commands so far, waits for them, and goes on with new ones when the CPU has reduced the depth: on a device
-// that is a CPU the wait costs nothing that a barrier would not.
-void Renderer::Impl::buildPyramidOnHost() {
+void Renderer::Impl::cullEarly() {
+  if (!cullLists->onHost()) {
+    cull->recordEarly(commands, *cullLists);
+    return;
+  }
+  const TraceScope scope("cull early");
+  const int64_t beganNs = monotonicNs();
+  cullLists->cullEarly(*pools);
+  hostEarlyMs = static_cast<double>(monotonicNs() - beganNs) * 1e-6;
+}
+
+// By the CPU: ends the commands so far, waits for them, and goes on with new ones when it is done: on a device that is
+// a CPU the wait costs nothing that a barrier would not.
+void Renderer::Impl::cullLate() {
+  if (!cullLists->onHost()) {
+    cull->recordDepthPyramid(commands, *cullLists);
+    timestamps->mark(commands, "depth_map");
+    cull->recordLate(commands, *cullLists);
+    return;
+  }
+  timestamps->mark(commands, "depth_map");
   commands.end();
   submitAndWait();
-  const TraceScope scope("depth pyramid");
-  cullLists->buildPyramid();
+  const TraceScope scope("cull late");
+  cullLists->cullLate(*pools);
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
 }
 
@@ -313,7 +332,7 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
     draw(HazeBy::vertex, indirect, 0, byVertex);
     draw(HazeBy::pixel, indirect, byVertex, cullLists->candidateCount() - byVertex);
   };
-  cull->recordEarly(commands, *cullLists);
+  cullEarly();
   timestamps->mark(commands, "cull_early");
   scene->begin(commands, targets, ScenePass::Pass::first, input.background);
   drawClusters(cullLists->earlyBuffer());
@@ -325,13 +344,7 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
     } else {
       cull->recordDepthCopy(commands, targets, *cullLists);
     }
-    if (cullLists->pyramidOnHost()) {
-      buildPyramidOnHost();
-    } else {
-      cull->recordDepthPyramid(commands, *cullLists);
-    }
-    timestamps->mark(commands, "depth_map");
-    cull->recordLate(commands, *cullLists);
+    cullLate();
     timestamps->mark(commands, "cull_late");
   }
   scene->begin(commands, targets, ScenePass::Pass::goesOn, input.background);
@@ -395,7 +408,8 @@ void Renderer::Impl::readTimes(FrameOutput& output) {
   passTimes.clear();
   if (!spans.empty()) output.gpuMs = spans.back().endMs;
   for (const Timestamps::Span& span : spans) {
-    passTimes.push_back({span.name, span.endMs - span.beginMs});
+    const double beforeMs = cullLists->onHost() && std::string_view(span.name) == "cull_early" ? hostEarlyMs : 0;
+    passTimes.push_back({span.name, beforeMs + span.endMs - span.beginMs});
     const auto at = [&](double ms) { return endNs - static_cast<int64_t>((output.gpuMs - ms) * 1e6); };
     traceSpan("GPU", span.name, at(span.beginMs), at(span.endMs));
   }

@@ -23,8 +23,9 @@
 
 namespace eye {
 
-// Who reduces the depth map: compute shaders; the CPU; or, by kind of device, whichever is faster there.
-enum class DepthPyramidBy { device, compute, host };
+// Who reduces the depth map and tests the clusters against it: compute shaders; the CPU; or, by kind of device,
+// whichever is faster there.
+enum class CullBy { device, compute, host };
 
 struct RendererOptions {
   int widthPx = 800, heightPx = 600;
@@ -36,7 +37,7 @@ struct RendererOptions {
   bool vsync = true;
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
   int textureSize = 128;                          // of the terrain database
-  DepthPyramidBy depthPyramid = DepthPyramidBy::device;
+  CullBy cullBy = CullBy::device;
   bool airByPixel = false;  // all haze and sky: what both by vertex are judged by, see haze_width.h, sky_dome.h
   TextureFilter filter = TextureFilter::device;
   int samples = 1;                  // a pixel, 1 or 4; depth is read back at the pixels' centres with either

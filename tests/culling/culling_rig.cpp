@@ -33,8 +33,7 @@ std::string difference(const Picture& expected, const Picture& found, int widthP
                      colour(expected));
 }
 
-std::unique_ptr<CullingRig> CullingRig::open(const std::string& database, int widthPx, int heightPx,
-                                             DepthPyramidBy pyramidBy) {
+std::unique_ptr<CullingRig> CullingRig::open(const std::string& database, int widthPx, int heightPx, CullBy cullBy) {
   const Result<DatabaseReader> reader = DatabaseReader::open(database);
   if (!reader) FAIL(reader.error().message);
   auto rig = std::make_unique<CullingRig>();
@@ -43,7 +42,7 @@ std::unique_ptr<CullingRig> CullingRig::open(const std::string& database, int wi
                                     .device = {},
                                     .gpuBudgetBytes = kBudgetBytes,
                                     .textureSize = reader->info().textureSize,
-                                    .depthPyramid = pyramidBy});
+                                    .cullBy = cullBy});
   if (!renderer && renderer.error().kind == ErrorKind::notFound) {
     WARN("no Vulkan device here: " << renderer.error().message);
     return nullptr;

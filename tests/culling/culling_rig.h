@@ -24,8 +24,7 @@ std::string difference(const Picture& expected, const Picture& found, int widthP
 class CullingRig {
  public:
   // Null, with a warning, where this machine has no Vulkan device.
-  static std::unique_ptr<CullingRig> open(const std::string& database, int widthPx, int heightPx,
-                                          DepthPyramidBy pyramidBy);
+  static std::unique_ptr<CullingRig> open(const std::string& database, int widthPx, int heightPx, CullBy cullBy);
 
   // Walks the forest; `settle`: and loads what it wants until nothing is missing.
   enum class Load { nothing, once, settle };

@@ -63,11 +63,11 @@ size_t differing(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b)
 }  // namespace
 
 TEST_CASE("occlusion culling changes no pixel, and the GPU culls as its CPU mirror") {
-  RendererOptions pyramidBy = options();
-  pyramidBy.depthPyramid = GENERATE(DepthPyramidBy::compute, DepthPyramidBy::host);
-  pyramidBy.samples = GENERATE(1, 4);
-  INFO(pyramidBy.samples << " samples a pixel");
-  const auto renderer = makeRenderer(pyramidBy);
+  RendererOptions made = options();
+  made.cullBy = GENERATE(CullBy::compute, CullBy::host);
+  made.samples = GENERATE(1, 4);
+  INFO(made.samples << " samples a pixel");
+  const auto renderer = makeRenderer(made);
   if (!renderer) return;
   const std::vector<ChunkDraw> draws = mountains(*renderer, 9, ecefFromGeodetic({49, 20, 2500}));
   const glm::ivec2 maps[] = {{200, 150}, {64, 48}, {80, 61}, {37, 29}, {320, 240}, {1, 1}, {7, 1}};

@@ -122,7 +122,7 @@ TEST_CASE("no texel of a depth map covers more pixels than a shader's loop may c
   RendererOptions large = options(false);
   large.widthPx = 640;
   large.heightPx = 480;
-  large.depthPyramid = DepthPyramidBy::compute;
+  large.cullBy = CullBy::compute;
   const auto renderer = makeRenderer(large);
   if (!renderer) return;
   const std::vector<ChunkDraw> draws = mountains(*renderer, 7, ecefFromGeodetic({49, 20, 2500}));

@@ -45,14 +45,14 @@ DeviceFacts card() {
 
 }  // namespace
 
-TEST_CASE("a graphics card gets what it can: anisotropy, blended levels, its own depth maps") {
+TEST_CASE("a graphics card gets what it can: anisotropy, blended levels, its own culling") {
   const DeviceTraits traits = chooseTraits(card());
   CHECK(traits.lacks.empty());
   CHECK(traits.queueFamily == 1);
   CHECK(traits.timestampBits == 36);
   CHECK(traits.msPerTick == Approx(40e-6));
   CHECK_FALSE(traits.isCpu);
-  CHECK_FALSE(traits.reducesDepthOnHost);
+  CHECK_FALSE(traits.cullsOnHost);
   CHECK_FALSE(traits.binsBeforeRastering);
   CHECK(traits.blendsMipLevels);
   CHECK(traits.mostAnisotropy == 8);
@@ -60,7 +60,7 @@ TEST_CASE("a graphics card gets what it can: anisotropy, blended levels, its own
   CHECK(bool(traits.sampleCounts & vk::SampleCountFlagBits::e4));
   CHECK(traits.mostTextureLayers == 2048);
   CHECK(traits.mostDraws == 1000);
-  CHECK(choicesText(traits) == "imagery anisotropic, depth maps reduced by compute shaders, 4 samples a pixel at most");
+  CHECK(choicesText(traits) == "imagery anisotropic, culling by compute shaders, 4 samples a pixel at most");
 }
 
 TEST_CASE("a card without anisotropy blends levels, and is asked for no more than it has") {
@@ -83,12 +83,12 @@ TEST_CASE("a CPU gets what is cheap there, and can be told to take more") {
   facts.properties.deviceType = vk::PhysicalDeviceType::eCpu;
   const DeviceTraits traits = chooseTraits(facts);
   CHECK(traits.isCpu);
-  CHECK(traits.reducesDepthOnHost);
+  CHECK(traits.cullsOnHost);
   CHECK(traits.binsBeforeRastering);
   CHECK_FALSE(traits.blendsMipLevels);
   CHECK_FALSE(traits.drawsAnisotropic);
   CHECK(traits.mostAnisotropy == 8);
-  CHECK(choicesText(traits) == "imagery bilinear, depth maps reduced by the host, 4 samples a pixel at most");
+  CHECK(choicesText(traits) == "imagery bilinear, culling by the host, 4 samples a pixel at most");
 }
 
 TEST_CASE("only what is needed is enabled") {

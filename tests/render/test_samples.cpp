@@ -64,7 +64,7 @@ TEST_CASE("four samples smooth edges and leave depth at the pixels' centres, val
 
 TEST_CASE("the depth map of four samples holds a pixel's farthest") {
   RendererOptions made = options(4);
-  made.depthPyramid = GENERATE(DepthPyramidBy::compute, DepthPyramidBy::host);
+  made.cullBy = GENERATE(CullBy::compute, CullBy::host);
   const auto renderer = makeRenderer(made);
   if (!renderer) return;
   // Black ground before magenta: a pixel of another colour than black sees past the ground with some sample.

@@ -1,0 +1,29 @@
+// The decisions of cull_early.comp and cull_late.comp by plain code, for devices that are a CPU: the same fates and the
+// same clusters drawn, at a twentieth of what lavapipe takes for the shaders. Most of that is what lanes of a shader
+// must do and a loop need not: go on when a visible texel is found, compute what only a neighbour asks for.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "shared/cull_types.h"
+
+namespace eye {
+
+// Of one frame, each as shaders/shared/cull_buffers.h has it.
+struct HostCull {
+  const shader::CullParams& params;
+  std::span<const shader::CullChunk> chunks;
+  std::span<const shader::CullCandidate> candidates;
+  std::span<const shader::ClusterRecord> clusters;  // the resident ones
+  std::span<uint32_t> visible;                      // of them
+  std::span<shader::DrawCommand> commands;          // one for each candidate, as is fates
+  std::span<uint32_t> fates;
+};
+
+// Commands for what was visible in the last frame and is in view; fates: EYE_FATE_EARLY where it is drawn.
+void cullEarly(const HostCull& cull);
+// Commands for what shows and was not drawn early; all fates; visibility for the next frame.
+void cullLate(const HostCull& cull, std::span<const float> pyramid);
+
+}  // namespace eye
