@@ -237,6 +237,7 @@ FrameInput ImageGenerator::lastInput() const {
   return {.view = view_,
           .draws = draws_,
           .lighting = drawn_->lighting,
+          .groundDepthM = selection_.groundDepthM,
           .background = options_.background,
           .depthMapPx = drawn_->depthMapPx,
           .overlay = {}};
@@ -288,6 +289,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
     FrameInput input{.view = view_,
                      .draws = draws_,
                      .lighting = lighting,
+                     .groundDepthM = frozen ? std::nullopt : selection_.groundDepthM,
                      .background = options_.background,
                      .depthMapPx = record.depthMapPx,
                      .freezeCulling = frozen,

@@ -5,6 +5,7 @@
 namespace eye {
 namespace {
 
+constexpr int kSettleFrames = 1;          // to off or from one size to another: what is visible is known, or no matter
 constexpr double kLongestFrameMs = 1000;  // a longer one was held up, and would stay in the means for many frames
 
 bool usable(const SelectorInput& input) {
@@ -26,7 +27,10 @@ void PassModel::learn(const SelectorInput& input, double sum) {
   const bool on = input.used != DepthMapChoice::off;
   const bool wasOn = used_ != DepthMapChoice::off;
   framesInUse_ = input.used == used_ ? framesInUse_ + 1 : 0;
-  if (framesInUse_ == 0) framesMeasured_ = 0;
+  if (framesInUse_ == 0) {
+    framesMeasured_ = 0;
+    settleFrames_ = on && !wasOn ? rules_.settleFrames : std::min(rules_.settleFrames, kSettleFrames);
+  }
   used_ = input.used;
   if (on && !wasOn) {
     drawOnMs_.restart();
@@ -44,7 +48,7 @@ void PassModel::learn(const SelectorInput& input, double sum) {
   budget_.account(offMs, provenGainMs_);
   offCostMs_.add(offMs);
   submitted_ = static_cast<double>(input.submittedTriangles);
-  if (framesInUse_ < rules_.settleFrames) return;
+  if (framesInUse_ < settleFrames_) return;
 
   framesMeasured_ = std::min(framesMeasured_ + 1, rules_.trialFrames);
   if (!on) {

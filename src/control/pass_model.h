@@ -25,7 +25,7 @@ class PassModel {
   bool affords(DepthMapChoice choice, int frames) const;
   // What may be lost is lost, and what is in use does not earn it back: it must go. A size that earns may stay, though
   // the trial that found it has used the budget up.
-  bool overspent() const { return budget_.empty() && framesInUse_ >= rules_.settleFrames && provenGainMs_ <= 0; }
+  bool overspent() const { return budget_.empty() && framesInUse_ >= settleFrames_ && provenGainMs_ <= 0; }
 
   // What a frame costs without the pass, measured or reckoned.
   double offMs() const { return offCostMs_.mean(); }
@@ -48,6 +48,7 @@ class PassModel {
   double measuredSum_ = 0;  // of the frame whose share was measured last
   DepthMapChoice used_ = DepthMapChoice::off;
   int framesInUse_ = 0, framesMeasured_ = 0;
+  int settleFrames_ = 0;  // of what is in use, before it is learnt from
 };
 
 }  // namespace eye

@@ -44,7 +44,7 @@ struct AdaptiveRules {
   // When to change and when to try, in frames and in shares of a frame's cost.
   double hysteresis = 0.005;
   int dwellFrames = 30;
-  int settleFrames = 3;  // after a change: not learnt from; what is visible is known only then
+  int settleFrames = 3;  // from off to a size: not learnt from, what is visible is known only then; other changes one
   int trialFrames = 3;   // after these: learnt from
   int firstIntervalFrames = 60, longestIntervalFrames = 960;
   double lossRate = 0.01;  // of a frame's cost, what trials and errors may cost on average

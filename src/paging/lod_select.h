@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "geo/view.h"
@@ -47,6 +48,9 @@ struct Selection {
   std::vector<DrawnChunk> draws;    // front to back
   std::vector<WantedChunk> wanted;  // most urgent first; the children of one parent behind one another
   SelectionCounts counts;
+  // As far as the horizon all that is drawn lies above the ellipsoid lowered by so much: what meets that has met terrain.
+  // Nothing where the horizon was not asked for.
+  std::optional<double> groundDepthM;
 
   // The walk's own, kept from frame to frame so that it does not allocate.
   struct Coarse {  // drawn with an error above the tolerance

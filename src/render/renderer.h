@@ -76,6 +76,8 @@ struct FrameInput {
   View view;
   std::span<const ChunkDraw> draws;  // front to back
   Lighting lighting;
+  // Terrain hides all that meets the ellipsoid lowered by so much, so no sky is drawn there; nothing: not known.
+  std::optional<double> groundDepthM{};
   std::optional<glm::vec3> background;  // instead of the sky, without haze: for tests that look for holes
   // Occlusion culling with a depth map of this size, see CullPass; nothing: every draw as it is.
   std::optional<glm::ivec2> depthMapPx;

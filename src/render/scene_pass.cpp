@@ -194,7 +194,10 @@ void ScenePass::bindTextures(const GpuDevice& gpu, const GpuImage& textures) {
 void ScenePass::placeSky(const FrameInput& input, bool byPixel) {
   const glm::vec4 up = frame().up_ecef;
   dome_.reset();
-  if (!byPixel && up.w < kDomeTopM) dome_ = domePart(input.view, Vec3d(up), Vec3d(frame().domeAhead_ecef));
+  if (!byPixel && up.w < kDomeTopM) {
+    const double lowestRad = input.groundDepthM ? horizonRad(up.w, *input.groundDepthM) : domeRingRad(0);
+    dome_ = domePart(input.view, Vec3d(up), Vec3d(frame().domeAhead_ecef), lowestRad);
+  }
   eye::placeStars(input, placedStars_);
   std::ranges::copy(placedStars_, starBuffer_.as<StarInstance>().begin());
 }

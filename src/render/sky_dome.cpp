@@ -42,13 +42,25 @@ Vec3d domeAhead(const Vec3d& upEcef) {
   return glm::normalize(aside - glm::dot(aside, upEcef) * upEcef);
 }
 
-DomePart domePart(const View& view, const Vec3d& upEcef, const Vec3d& aheadEcef) {
+double horizonRad(double heightM, double depthM) {
+  // Of the balls within the ellipsoid that touch it below the eye, one as curved as the ellipsoid is anywhere (across
+  // the equator's meridians, b * b / a) leaves the most sky. And what floats and roundings may ask for.
+  constexpr double kLeastRadiusM = 6335439;
+  constexpr double kMarginRad = 1e-3;
+  // The lowered ellipsoid has the shape of the full one (paging/horizon.h): at the equator it is lower by 0.3 %.
+  const double lowestM = depthM * (depthM > 0 ? 1.005 : 1);
+  constexpr double kLeastAboveM = 10;
+  if (!(heightM + depthM > kLeastAboveM)) return -kPi / 2;
+  return -std::acos((kLeastRadiusM - lowestM) / (kLeastRadiusM + heightM)) - kMarginRad;
+}
+
+DomePart domePart(const View& view, const Vec3d& upEcef, const Vec3d& aheadEcef, double lowestRad) {
   const Cone cone = coneOf(view);
   const double elevation = std::asin(std::clamp(glm::dot(cone.axisEcef, upEcef), -1.0, 1.0));
   DomePart part;
   // A ring more to either side.
   uint32_t low = 0, high = 2 * kRings;
-  while (low < high && domeRingRad(low + 1) < elevation - cone.halfRad) ++low;
+  while (low < high && domeRingRad(low + 1) < std::max(elevation - cone.halfRad, lowestRad)) ++low;
   while (high > low && domeRingRad(high - 1) > elevation + cone.halfRad) --high;
   part.firstRing = low;
   part.rings = high - low + 1;

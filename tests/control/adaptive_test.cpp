@@ -134,7 +134,7 @@ TEST_CASE("descending into mountains it tries at once, not when its interval has
   int inRow = 0;
   for (auto choice = on; choice != result.choices.end(); ++choice) {
     inRow = *choice == DepthMapChoice::off ? inRow + 1 : 0;
-    CHECK(inRow <= rules.settleFrames + rules.trialFrames);
+    CHECK(inRow <= 1 + rules.trialFrames);
   }
   CHECK(std::count(on, result.choices.end(), DepthMapChoice::off) < 600 * 3 / 100);
 }

@@ -143,12 +143,14 @@ TEST_CASE("the dome's part holds every ray of the view") {
     const Frustum frustum = offAxisFrustum(left, between(left + 1, 85), bottom, between(bottom + 1, 85), 1);
     const View view = makeView(pose, frustum, 320, 240);
     const Vec3d up = upAt(pose.position.latDeg, pose.position.lonDeg), ahead = domeAhead(up);
-    const DomePart part = domePart(view, up, ahead);
+    const double lowestRad = i % 2 == 0 ? domeRingRad(0) : between(-0.3, 0);
+    const DomePart part = domePart(view, up, ahead, lowestRad);
     parts += part.strips < EYE_DOME_MERIDIANS;
     for (int ray = 0; ray < 20; ++ray) {
       const Vec3d eye(between(frustum.tanLeft, frustum.tanRight), -between(frustum.tanBottom, frustum.tanTop), 1);
       const Vec3d direction = glm::normalize(glm::transpose(view.eyeFromEcef) * eye);
       const double elevation = std::asin(glm::dot(direction, up));
+      if (elevation < lowestRad) continue;
       CHECK(domeRingRad(part.firstRing) <= elevation + 1e-9);
       CHECK(domeRingRad(part.firstRing + part.rings - 1) >= elevation - 1e-9);
       const double azimuth = std::atan2(glm::dot(direction, glm::cross(up, ahead)), glm::dot(direction, ahead));
@@ -158,6 +160,38 @@ TEST_CASE("the dome's part holds every ray of the view") {
     }
   }
   CHECK(parts > 500);  // not all of them whole rounds
+}
+
+TEST_CASE("below the horizon that the dome ends at every ray meets the lowered ellipsoid") {
+  std::mt19937 random(11);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  double farthest = 0;  // below the horizon that a ray needs to meet it, radians
+  for (int i = 0; i < 4000; ++i) {
+    const double depthM = i % 3 == 0 ? between(0, 300000) : between(-300, 500);
+    const double heightM = -depthM + std::exp(between(std::log(11.0), std::log(20000.0)));
+    const Geodetic place{between(-90, 90), between(-180, 180), heightM};
+    const Vec3d up = upAt(place.latDeg, place.lonDeg), ahead = domeAhead(up);
+    const double azimuth = between(0, 6.283), elevation = horizonRad(heightM, depthM);
+    REQUIRE(elevation > -1.57);
+    const double shrink = 1 - 1.0001 * depthM / 6356752.314245;
+    const Vec3d axes = Vec3d(6378137, 6378137, 6356752.314245) * shrink;
+    const auto meets = [&](double ray) {
+      const Vec3d level = ahead * std::cos(azimuth) + glm::cross(up, ahead) * std::sin(azimuth);
+      const Vec3d from = ecefFromGeodetic(place) / axes, to = (up * std::sin(ray) + level * std::cos(ray)) / axes;
+      const double along = glm::dot(from, to);
+      return along * along >= glm::dot(to, to) * (glm::dot(from, from) - 1);
+    };
+    INFO("height " << heightM << ", depth " << depthM << ", latitude " << place.latDeg);
+    CHECK(meets(elevation));
+    double above = elevation;
+    while (meets(above)) above += 1e-4;
+    if (depthM < 500) farthest = std::max(farthest, above - elevation);
+  }
+  CHECK(farthest < 0.01);  // and not much too low
+  CHECK(horizonRad(-400, 400) < -1.57);
+  CHECK(horizonRad(-500, 400) < -1.57);
 }
 
 TEST_CASE("fog lies on the ground: from a height the sky over it is that of a clear day") {
