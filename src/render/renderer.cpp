@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "gpu/pipeline_cache.h"
+#include "gpu/submission.h"
 #include "gpu/swapchain.h"
 #include "gpu/timestamps.h"
 #include "render/cull_pass.h"
@@ -38,13 +39,14 @@ struct Renderer::Impl {
   std::unique_ptr<Overlay> overlay;
   std::unique_ptr<Timestamps> timestamps;
   Targets targets;
-  vk::raii::CommandBuffer commands{nullptr};
-  vk::raii::Fence finished{nullptr};
+  Submission frame;              // the last, or only, commands of a frame
+  Submission sky;                // where the CPU culls: drawn by the device meanwhile
   std::vector<ChunkDraw> draws;  // of the frame, in two parts by haze
   std::vector<PassTime> passTimes;
-  std::vector<uint8_t> rgba;  // the picture read back, where the window's pixels are in another order
-  double hostEarlyMs = 0;     // of the frame's early culling, where the CPU does it
-  bool drawn = false;         // the colour target holds a whole picture, in usageCopySource
+  std::vector<uint8_t> rgba;               // the picture read back, where the window's pixels are in another order
+  double hostEarlyMs = 0, hostLateMs = 0;  // of the frame's culling, where the CPU does it
+  bool skyIsDrawn = false;                 // of the frame at hand, by commands of its own
+  bool drawn = false;                      // the colour target holds a whole picture, in usageCopySource
 
   vk::Format colourFormat() const;
   void resizeTargets(int widthPx, int heightPx);
@@ -53,9 +55,9 @@ struct Renderer::Impl {
   void drawAir(const FrameInput& input);
   void recordScene(const FrameInput& input, const DrawCounts& counts);
   void cullEarly();
-  void cullLate();
+  void submitSky();
+  void cullLate(const FrameInput& input);
   void recordCulledScene(const FrameInput& input, const DrawCounts& counts);
-  void submitAndWait();
   std::span<const uint8_t> pictureRgba();
   void readTimes(FrameOutput& output);
 };
@@ -75,6 +77,10 @@ vk::SampleCountFlagBits sampleCount(const RendererOptions& options) {
 
 bool drawsSamples(const GpuDevice& gpu, vk::SampleCountFlagBits samples) {
   return static_cast<bool>(gpu.traits.sampleCounts & samples);
+}
+
+double millisecondsSince(int64_t beganNs) {
+  return static_cast<double>(monotonicNs() - beganNs) * 1e-6;
 }
 
 bool cullsOnHost(const RendererOptions& options, const GpuDevice& gpu) {
@@ -141,9 +147,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     impl->timestamps = std::make_unique<Timestamps>(device);
     impl->overlap = std::make_unique<RasterOverlap>(device);
     impl->scene->bindTextures(device, impl->pools->textures());
-    const vk::CommandBufferAllocateInfo one(*device.commandPool, vk::CommandBufferLevel::ePrimary, 1);
-    impl->commands = std::move(vk::raii::CommandBuffers(device.device, one).front());
-    impl->finished = vk::raii::Fence(device.device, vk::FenceCreateInfo{});
+    impl->frame = Submission(device);
+    impl->sky = Submission(device);
 
     std::unique_ptr<Renderer> renderer(new Renderer(std::move(impl)));
     if (auto warm = warmUp(*renderer, options); !warm) return tl::unexpected(warm.error());
@@ -213,7 +218,9 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
     std::optional<uint32_t> shown;
     if (impl.swapchain != nullptr) shown = impl.swapchain->held();
     impl.record(input, counts, culls, shown);
-    impl.submitAndWait();
+    impl.frame.submit(*impl.gpu);
+    impl.frame.wait(*impl.gpu);
+    if (impl.skyIsDrawn) impl.sky.wait(*impl.gpu);
     impl.pools->staged();
     impl.drawn = true;
 
@@ -271,11 +278,12 @@ bool Renderer::Impl::prepareCulling(const FrameInput& input, size_t byVertex) {
 // Where no terrain is, and before it.
 void Renderer::Impl::drawAir(const FrameInput& input) {
   if (input.background) return;
-  scene->drawSky(commands);
-  scene->drawClouds(commands);
+  if (!skyIsDrawn) scene->drawSky(frame.commands());
+  scene->drawClouds(frame.commands());
 }
 
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
+  const vk::raii::CommandBuffer& commands = frame.commands();
   scene->begin(commands, targets, ScenePass::Pass::whole, input.background);
   const uint32_t batch = overlap->batch(counts.draws());
   const auto draw = [&](HazeBy haze, const DrawRange& range) {
@@ -295,35 +303,51 @@ void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& coun
 
 void Renderer::Impl::cullEarly() {
   if (!cullLists->onHost()) {
-    cull->recordEarly(commands, *cullLists);
+    cull->recordEarly(frame.commands(), *cullLists);
     return;
   }
   const TraceScope scope("cull early");
   const int64_t beganNs = monotonicNs();
   cullLists->cullEarly(*pools);
-  hostEarlyMs = static_cast<double>(monotonicNs() - beganNs) * 1e-6;
+  hostEarlyMs = millisecondsSince(beganNs);
 }
 
-// By the CPU: ends the commands so far, waits for them, and goes on with new ones when it is done: on a device that is
-// a CPU the wait costs nothing that a barrier would not.
-void Renderer::Impl::cullLate() {
+// Where nothing is yet: what the late pass adds is drawn over it.
+void Renderer::Impl::submitSky() {
+  const vk::raii::CommandBuffer& commands = sky.commands();
+  sky.begin();
+  scene->begin(commands, targets, ScenePass::Pass::between, std::nullopt);
+  scene->drawSky(commands);
+  scene->end(commands);
+  timestamps->mark(commands, "sky");
+  sky.submit(*gpu);
+  skyIsDrawn = true;
+}
+
+// By the CPU: when the commands so far have been executed, on a device that is a CPU at no more than a barrier's cost.
+// Other threads of the device draw the sky meanwhile.
+void Renderer::Impl::cullLate(const FrameInput& input) {
   if (!cullLists->onHost()) {
-    cull->recordDepthPyramid(commands, *cullLists);
-    timestamps->mark(commands, "depth_map");
-    cull->recordLate(commands, *cullLists);
+    cull->recordDepthPyramid(frame.commands(), *cullLists);
+    timestamps->mark(frame.commands(), "depth_map");
+    cull->recordLate(frame.commands(), *cullLists);
     return;
   }
-  timestamps->mark(commands, "depth_map");
-  commands.end();
-  submitAndWait();
+  timestamps->mark(frame.commands(), "depth_map");
+  frame.submit(*gpu);
+  if (!input.background) submitSky();
+  frame.wait(*gpu);
   const TraceScope scope("cull late");
+  const int64_t beganNs = monotonicNs();
   cullLists->cullLate(*pools);
-  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  hostLateMs = millisecondsSince(beganNs);
+  frame.begin();
 }
 
 // Two passes: what was visible in the last frame, then what else its depth does not hide. The skirts, few and mostly
 // hidden, are not tested.
 void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts& counts) {
+  const vk::raii::CommandBuffer& commands = frame.commands();
   const auto draw = [&](HazeBy haze, const GpuBuffer& indirect, uint32_t first, uint32_t count) {
     scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), indirect, first, count);
   };
@@ -344,7 +368,7 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
     } else {
       cull->recordDepthCopy(commands, targets, *cullLists);
     }
-    cullLate();
+    cullLate(input);
     timestamps->mark(commands, "cull_late");
   }
   scene->begin(commands, targets, ScenePass::Pass::goesOn, input.background);
@@ -359,7 +383,9 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
 void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, bool culls,
                             std::optional<uint32_t> shown) {
   const TraceScope scope("record");
-  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  const vk::raii::CommandBuffer& commands = frame.commands();
+  skyIsDrawn = false;
+  frame.begin();
   timestamps->begin(commands);
   overlap->begin(commands);
   pools->recordUploads(commands);
@@ -388,17 +414,6 @@ void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, b
     swapchain->recordCopy(commands, targets.colour, *shown);
     timestamps->mark(commands, "present");
   }
-  commands.end();
-}
-
-void Renderer::Impl::submitAndWait() {
-  const vk::CommandBufferSubmitInfo info(*commands);
-  vk::SubmitInfo2 submit;
-  submit.setCommandBufferInfos(info);
-  gpu->queue.submit2(submit, *finished);
-  const TraceScope scope("wait for the GPU");
-  (void)gpu->device.waitForFences(*finished, true, UINT64_MAX);
-  gpu->device.resetFences(*finished);
 }
 
 void Renderer::Impl::readTimes(FrameOutput& output) {
@@ -408,8 +423,10 @@ void Renderer::Impl::readTimes(FrameOutput& output) {
   passTimes.clear();
   if (!spans.empty()) output.gpuMs = spans.back().endMs;
   for (const Timestamps::Span& span : spans) {
-    const double beforeMs = cullLists->onHost() && std::string_view(span.name) == "cull_early" ? hostEarlyMs : 0;
-    passTimes.push_back({span.name, beforeMs + span.endMs - span.beginMs});
+    passTimes.push_back({span.name, span.endMs - span.beginMs});
+    if (cullLists->onHost() && passTimes.back().name == std::string_view("cull_early"))
+      passTimes.back().ms = hostEarlyMs;
+    if (cullLists->onHost() && passTimes.back().name == std::string_view("cull_late")) passTimes.back().ms = hostLateMs;
     const auto at = [&](double ms) { return endNs - static_cast<int64_t>((output.gpuMs - ms) * 1e6); };
     traceSpan("GPU", span.name, at(span.beginMs), at(span.endMs));
   }
@@ -458,10 +475,10 @@ void Renderer::presentAgain() {
   const std::optional<uint32_t> shown = impl.swapchain->held();
   if (!shown) return;
   try {
-    impl.commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    impl.swapchain->recordCopy(impl.commands, impl.targets.colour, *shown);
-    impl.commands.end();
-    impl.submitAndWait();
+    impl.frame.begin();
+    impl.swapchain->recordCopy(impl.frame.commands(), impl.targets.colour, *shown);
+    impl.frame.submit(*impl.gpu);
+    impl.frame.wait(*impl.gpu);
     impl.swapchain->present(*impl.gpu);
   } catch (const vk::SystemError& e) {
     spdlog::debug("the last picture cannot be shown again: {}", e.what());  // the next drawFrame reports what is wrong

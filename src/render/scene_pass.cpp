@@ -217,11 +217,11 @@ void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& ta
   vk::RenderingAttachmentInfo colour, depth;
   colour.setImageView(isSampled ? *targets.colourSamples.view : *targets.colour.view);
   colour.setImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
-  if (isSampled && pass != Pass::first) {
+  if (isSampled && pass != Pass::first && pass != Pass::between) {
     colour.setResolveMode(vk::ResolveModeFlagBits::eAverage).setResolveImageView(*targets.colour.view);
     colour.setResolveImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
   }
-  const bool goesOn = pass == Pass::goesOn;
+  const bool goesOn = pass == Pass::goesOn || pass == Pass::between;
   colour.setLoadOp(goesOn ? Load::eLoad : background ? Load::eClear : Load::eDontCare);
   if (background) colour.setClearValue(vk::ClearColorValue(background->r, background->g, background->b, 1.0f));
   depth.setImageView(isSampled ? *targets.depthSamples.view : *targets.depth.view);

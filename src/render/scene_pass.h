@@ -42,9 +42,10 @@ class ScenePass {
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
   // One render pass, the whole, or a first and one that goes on with what that has drawn, or draw it over: begin, draw,
-  // end. `background`: a flat colour instead of the sky. Colour and depth are left as targets, but after the first of
-  // several passes the colour of a picture with several samples a pixel is still in its samples.
-  enum class Pass { whole, first, goesOn, over };
+  // end. `between`: goes on, and is not the last. `background`: a flat colour instead of the sky. Colour and depth are
+  // left as targets, but before the last of several passes the colour of a picture with several samples a pixel is
+  // still in its samples.
+  enum class Pass { whole, first, between, goesOn, over };
   void begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass,
              const std::optional<glm::vec3>& background) const;
   // Indirect commands `first` to `first + count - 1`; their firstInstance is the DrawData's index.
