@@ -90,19 +90,11 @@ void DepthMapControl::learn(const FrameOutput& output, double pagingMs) {
     if (isAdded) measured_.passCostMs += pass.ms;
     if (isAdded || isDrawing) measured_.frameCostMs += pass.ms;
   }
-  if (output.cpuMs > 0) costOnCpu(output.cpuMs - pagingMs);
-}
-
-// On a device that is a CPU its passes last as long as whatever else runs lets them: what they cost is CPU time. Of the
-// culling, short work of one thread, the shortest of the newest times is what it takes when nothing holds it up.
-void DepthMapControl::costOnCpu(double frameMs) {
-  constexpr size_t kNewest = 16;
-  if (measured_.used != passSize_) passMs_.clear();
-  passSize_ = measured_.used;
-  if (passMs_.size() == kNewest) passMs_.erase(passMs_.begin());
-  passMs_.push_back(measured_.passCostMs);
-  measured_.frameCostMs = std::max(frameMs, 0.0);
-  measured_.passCostMs = std::min(*std::ranges::min_element(passMs_), measured_.frameCostMs);
+  // On a device that is a CPU passes last as long as whatever else runs lets them: what they cost is CPU time.
+  if (output.cpuMs > 0) {
+    measured_.frameCostMs = std::max(output.cpuMs - pagingMs, 0.0);
+    measured_.passCostMs = std::min(pass_.observe(measured_.used, measured_.passCostMs), measured_.frameCostMs);
+  }
 }
 
 }  // namespace eye

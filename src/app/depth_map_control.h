@@ -3,10 +3,10 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "app/options.h"
 #include "control/fuzzy_selector.h"
+#include "control/shortest_pass.h"
 #include "geo/pose.h"
 #include "paging/lod_select.h"
 #include "render/renderer.h"
@@ -33,15 +33,12 @@ class DepthMapControl {
   const std::optional<Decision>& decision() const { return decision_; }
 
  private:
-  void costOnCpu(double frameMs);
-
   CullingMode culling_ = CullingMode::dynamic;
   DepthMapMode mode_ = DepthMapMode::automatic;
   glm::ivec2 fixedPx_{0, 0};
   FuzzySelector selector_;
   SelectorInput measured_;  // of the last frame
-  DepthMapChoice passSize_ = DepthMapChoice::off;
-  std::vector<double> passMs_;  // what culling took in the newest frames of one size, on a device that is a CPU
+  ShortestPass pass_;       // on a device that is a CPU
   std::optional<Decision> decision_;
 };
 
