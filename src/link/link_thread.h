@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "link/datagram_batch.h"
+#include "link/flood_gauge.h"
 #include "link/host_state.h"
 #include "link/udp_socket.h"
 
@@ -49,6 +50,7 @@ class LinkThread {
   std::string name_;
   DatagramBatch batch_;
   HostCounts counts_;
+  FloodGauge flood_;
   int64_t nextComplaintNs_ = 0;
   std::jthread thread_;  // last: it must not start before the rest is there, and joins first
 };
