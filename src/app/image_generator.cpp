@@ -74,6 +74,7 @@ SourceSample Sources::sample(double timeS) {
     SourceSample sample = source->sample(timeS);
     counts.packets += sample.counts.packets;
     counts.rejected += sample.counts.rejected;
+    counts.unread += sample.counts.unread;
     counts.lost += sample.counts.lost;
     finished = finished && sample.finished;
     if (sample.arrivedNs > spoken.arrivedNs) spoken = sample;

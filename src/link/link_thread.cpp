@@ -22,6 +22,7 @@ LinkThread::LinkThread(const UdpSocket& socket, LinkProtocol& protocol, std::str
     : socket_(socket),
       protocol_(protocol),
       name_(std::move(name)),
+      gate_(socket, name_),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void LinkThread::stop() {
@@ -34,9 +35,11 @@ void LinkThread::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const size_t taken = flood_.isOn() || socket_.wait(kLinkPollMs) ? drain() : 0;
     const int64_t nowNs = monotonicNs();
+    gate_.update(protocol_.soleSender(nowNs), nowNs);
+    counts_.unread = gate_.unread();
     protocol_.publish(counts_, nowNs);
     if (const auto outgoing = protocol_.due(nowNs)) (void)socket_.sendTo(outgoing->datagram, outgoing->receiver);
-    flood_.count(taken, nowNs);
+    flood_.count(static_cast<int64_t>(taken), nowNs);
     if (flood_.isOn() && taken < kBatchDatagrams) std::this_thread::sleep_for(kGather);
   }
 }
@@ -46,10 +49,13 @@ size_t LinkThread::drain() {
   const TraceScope scope("link");
   const std::span<const Datagram> datagrams = batch_.receive(socket_);
   const int64_t nowNs = monotonicNs();
+  const std::optional<Peer> sole = protocol_.soleSender(nowNs);
   for (const Datagram& datagram : datagrams) {
     ++counts_.packets;
     const auto taken = protocol_.take(datagram.payload, datagram.sender, nowNs);
-    if (!taken) reject(taken.error(), nowNs);
+    if (taken) continue;
+    reject(taken.error(), nowNs);
+    if (sole && datagram.sender != *sole) gate_.refused(datagram.sender);
   }
   return datagrams.size();
 }

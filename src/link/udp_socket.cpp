@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "link/udp_filter.h"
 #include "link/udp_group.h"
 
 namespace eye {
@@ -171,6 +172,18 @@ std::optional<std::span<const std::byte>> UdpSocket::receiveFrom(std::span<std::
 size_t UdpSocket::receiveMany(std::span<mmsghdr> headers) const {
   const int count = recvmmsg(fd_, headers.data(), static_cast<unsigned>(headers.size()), MSG_DONTWAIT, nullptr);
   return count < 0 ? 0 : static_cast<size_t>(count);
+}
+
+bool UdpSocket::admitOnly(const Peer& sender) const {
+  return eye::admitOnly(fd_, sender);
+}
+
+void UdpSocket::admitEveryone() const {
+  eye::admitEveryone(fd_);
+}
+
+uint32_t UdpSocket::dropped() const {
+  return droppedOf(fd_);
 }
 
 bool UdpSocket::sendTo(std::span<const std::byte> payload, const Peer& receiver) const {
