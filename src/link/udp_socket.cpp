@@ -93,8 +93,8 @@ Result<UdpSocket> UdpSocket::listenOn(const Endpoint& endpoint, const std::strin
   if (reach == Reach::multicast)
     if (const auto joined = joinGroup(*fd, listened, *interface); !joined) return tl::unexpected(joined.error());
 
-  // Room for a second of bursts while this thread does not run: 60 Hz of the largest state packets, many times over.
-  const int receiveBytes = 1 << 20;
+  // Room for 65 ms of a flood while its reader does not run, where the system grants so much.
+  const int receiveBytes = 4 << 20;
   setsockopt(*fd, SOL_SOCKET, SO_RCVBUF, &receiveBytes, sizeof(receiveBytes));
   if (bind(*fd, asSockaddr(*address), sizeof(*address)) == 0) return udp;
 
