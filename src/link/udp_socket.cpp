@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 #include <netdb.h>
+#include <netinet/udp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -200,6 +202,23 @@ SendOutcome UdpSocket::send(std::span<const std::byte> payload) const {
   // The refusal of an earlier datagram is reported instead of sending this one: try it again.
   if (errno == ECONNREFUSED && once() == whole) return SendOutcome::refused;
   return SendOutcome::failed;
+}
+
+bool UdpSocket::sendRun(std::span<const std::byte> payloads, size_t eachBytes) const {
+  iovec place{const_cast<std::byte*>(payloads.data()), payloads.size()};
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(uint16_t))> control{};
+  msghdr message{};
+  message.msg_iov = &place;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  cmsghdr* const header = CMSG_FIRSTHDR(&message);
+  header->cmsg_level = SOL_UDP;
+  header->cmsg_type = UDP_SEGMENT;
+  header->cmsg_len = CMSG_LEN(sizeof(uint16_t));
+  const auto each = static_cast<uint16_t>(eachBytes);
+  std::memcpy(CMSG_DATA(header), &each, sizeof(each));
+  return sendmsg(fd_, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(payloads.size());
 }
 
 void UdpSocket::allowBroadcast() const {
