@@ -37,10 +37,6 @@ Air airWithCloud(double baseM, double coverage, double visibilityM) {
   return air;
 }
 
-bool isSilent(const SourceSample& host, int64_t nowNs) {
-  return host.arrivedNs > 0 && nowNs - host.arrivedNs > host.carryOnNs;
-}
-
 bool operator==(const View& a, const View& b) {
   return a.eyeEcefM == b.eyeEcefM && a.eyeFromEcef == b.eyeFromEcef && a.widthPx == b.widthPx &&
          a.heightPx == b.heightPx && a.frustum == b.frustum;
@@ -74,6 +70,7 @@ SourceSample Sources::sample(double timeS) {
     SourceSample sample = source->sample(timeS);
     counts.packets += sample.counts.packets;
     counts.rejected += sample.counts.rejected;
+    counts.unread += sample.counts.unread;
     counts.lost += sample.counts.lost;
     finished = finished && sample.finished;
     if (sample.arrivedNs > spoken.arrivedNs) spoken = sample;
@@ -256,7 +253,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
   // Until a host has said a place the eye waits over the terrain's middle, and without one where it was told last.
   const bool heard = host.valid || !sources_.anyLive();
   if (heard) tracker_.observe(host, hostPose_, nowS);
-  eye_ = heard ? tracker_.eye() : DisplayedEye{.pose = hostPose_, .silent = isSilent(host, beganNs)};
+  eye_ = heard ? tracker_.eye() : DisplayedEye{.pose = hostPose_, .silent = host.isSilent(nowS)};
   const DisplayedEye& eye = eye_;
   pose_ = channelPose(eye.pose, options_);
   view_ = currentView(pose_, host.edges);

@@ -87,6 +87,7 @@ Json jsonOf(const FrameRecord& r) {
               {"host",
                {{"packets", r.host.packets},
                 {"rejected", r.host.rejected},
+                {"unread", r.host.unread},
                 {"lost", r.host.lost},
                 {"frame", r.hostFrame ? Json(*r.hostFrame) : Json(nullptr)},
                 {"delay_ms", r.eye.delayMs},

@@ -63,6 +63,7 @@ void ViewpointTracker::observe(const SourceSample& host, const Pose& pose, doubl
   ++frames_;
   nowS_ = nowS;
   live_ = host.live && host.valid;
+  silent_ = live_ && host.isSilent(nowS);
   jumped_ = false;
   if (!live_) {
     observePose(pose, nowS);
@@ -71,7 +72,6 @@ void ViewpointTracker::observe(const SourceSample& host, const Pose& pose, doubl
   }
 
   atS_ = static_cast<double>(host.atNs) * 1e-9;
-  arrivedS_ = static_cast<double>(host.arrivedNs) * 1e-9;
   carryOnS_ = static_cast<double>(host.carryOnNs) * 1e-9;
   stampedByHost_ = host.stampedByHost;
   motion_ = host.motion;
@@ -159,10 +159,6 @@ double ViewpointTracker::knownS() const {
   return live_ ? std::min(nowS_, heldS()) : nowS_;
 }
 
-bool ViewpointTracker::isSilent() const {
-  return live_ && nowS_ - arrivedS_ > carryOnS_;
-}
-
 double ViewpointTracker::delayS() const {
   return options_.hostDelay == HostDelayMode::fixed
              ? options_.hostDelayMs * 1e-3
@@ -170,7 +166,7 @@ double ViewpointTracker::delayS() const {
 }
 
 DisplayedEye ViewpointTracker::eye() const {
-  DisplayedEye eye{.pose = pose_, .silent = isSilent()};
+  DisplayedEye eye{.pose = pose_, .silent = silent_};
   if (!live_) return eye;
   eye.jitterMs = jitter_.jitterS() * 1e3;
   eye.stampedByHost = stampedByHost_;
@@ -190,7 +186,7 @@ DisplayedEye ViewpointTracker::eye() const {
 // of, and where the filter is wrong.
 std::optional<Pose> ViewpointTracker::foreseen(double atS) const {
   // So is one that was said again before the host fell silent: placed anew, then paused.
-  const bool standsStill = observedS_ - changedS_ > kStandsStillS || (isSilent() && observedS_ > changedS_);
+  const bool standsStill = observedS_ - changedS_ > kStandsStillS || (silent_ && observedS_ > changedS_);
   if (standsStill || sinceRestart_ < kFewestObservations) return std::nullopt;
   const Prediction prediction = predictor_.at(atS);
   const double ageS = std::abs(atS - changedS_);
@@ -216,7 +212,7 @@ Pose ViewpointTracker::carriedOn(double toS) const {
 ViewpointAhead ViewpointTracker::ahead(const Vec3d& nowForwardEcef, double inS) const {
   // A silent host's eye waits, and nobody knows where it will go on.
   const Prediction prediction =
-      options_.predictor == PredictorMode::none ? Prediction{} : predictor_.at(knownS() + (isSilent() ? 0 : inS));
+      options_.predictor == PredictorMode::none ? Prediction{} : predictor_.at(knownS() + (silent_ ? 0 : inS));
   if (!prediction.valid) return {inS, eyeEcefM_, pose_.position.altM, 0, nowForwardEcef, 0};
   const double turnRateRadS = prediction.turnRateDegS * kRadPerDeg;
   return {inS,
@@ -243,7 +239,7 @@ LookAhead ViewpointTracker::lookAhead(const View& view) const {
 }
 
 PredictionRecord ViewpointTracker::record(double horizonS) {
-  if (options_.predictor == PredictorMode::none || horizonS <= 0 || isSilent()) return {};
+  if (options_.predictor == PredictorMode::none || horizonS <= 0 || silent_) return {};
   const Prediction prediction = predictor_.at(nowS_ + horizonS);
   if (!prediction.valid) return {};
   // In the order of their times: a shorter horizon than before comes behind what is still awaited.

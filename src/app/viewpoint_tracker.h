@@ -61,7 +61,6 @@ class ViewpointTracker {
   double delayS() const;
   double heldS() const;
   double knownS() const;
-  bool isSilent() const;
   bool filterRuns() const { return live_ || options_.predictor != PredictorMode::none; }
   std::optional<Pose> foreseen(double atS) const;
   Pose carriedOn(double toS) const;
@@ -72,13 +71,13 @@ class ViewpointTracker {
   PoseHistory history_;  // of a live host
   double nowS_ = 0, frameRateHz_ = 60;
   int frames_ = 0, observations_ = 0;
-  bool live_ = false, jumped_ = false;
+  bool live_ = false, silent_ = false, jumped_ = false;
   // Of the newest observation.
   Pose pose_;
   Vec3d eyeEcefM_{};
   double observedS_ = 0, changedS_ = 0;  // when it was true; when the pose was another one last
   // Of a live host, from its sample: see there.
-  double atS_ = 0, arrivedS_ = 0, carryOnS_ = 0;
+  double atS_ = 0, carryOnS_ = 0;
   bool stampedByHost_ = false;
   std::function<Pose(int64_t)> motion_;
   double speedMS_ = 0;               // mean

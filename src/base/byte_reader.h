@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace eye {
@@ -14,10 +15,10 @@ class ByteReader {
  public:
   ByteReader(std::span<const std::byte> bytes, std::endian order) : bytes_(bytes), order_(order) {}
 
-  uint8_t u8() { return static_cast<uint8_t>(unsignedOf(1)); }
-  uint16_t u16() { return static_cast<uint16_t>(unsignedOf(2)); }
-  uint32_t u32() { return static_cast<uint32_t>(unsignedOf(4)); }
-  uint64_t u64() { return unsignedOf(8); }
+  uint8_t u8() { return unsignedOf<uint8_t>(); }
+  uint16_t u16() { return unsignedOf<uint16_t>(); }
+  uint32_t u32() { return unsignedOf<uint32_t>(); }
+  uint64_t u64() { return unsignedOf<uint64_t>(); }
   int8_t i8() { return static_cast<int8_t>(u8()); }
   int16_t i16() { return static_cast<int16_t>(u16()); }
   int32_t i32() { return static_cast<int32_t>(u32()); }
@@ -28,7 +29,14 @@ class ByteReader {
 
   void skip(size_t count) { bytes(count); }
   // The next `count` bytes, without a copy; empty when there are fewer.
-  std::span<const std::byte> bytes(size_t count);
+  std::span<const std::byte> bytes(size_t count) {
+    if (!ok_ || count > remaining()) {
+      ok_ = false;
+      return {};
+    }
+    position_ += count;
+    return bytes_.subspan(position_ - count, count);
+  }
 
   // For formats that state their byte order themselves (CIGI, pcap).
   void setOrder(std::endian order) { order_ = order; }
@@ -38,7 +46,19 @@ class ByteReader {
   size_t remaining() const { return bytes_.size() - position_; }
 
  private:
-  uint64_t unsignedOf(size_t count);
+  // Whole and then turned round: a flood's datagrams are read with this.
+  template <class T>
+  T unsignedOf() {
+    const auto taken = bytes(sizeof(T));
+    T value = 0;
+    if (taken.empty()) return value;
+    std::memcpy(&value, taken.data(), sizeof(T));
+    if (order_ == std::endian::native) return value;
+    if constexpr (sizeof(T) == 2) return __builtin_bswap16(value);
+    if constexpr (sizeof(T) == 4) return __builtin_bswap32(value);
+    if constexpr (sizeof(T) == 8) return __builtin_bswap64(value);
+    return value;
+  }
 
   std::span<const std::byte> bytes_;
   size_t position_ = 0;

@@ -156,6 +156,7 @@ Result<FloodFigures> showUnderFlood(LiveShow& show, HostProtocol protocol, Flood
   const auto& last = frames->back().counts;
   const double spanS = static_cast<double>(frames->back().beganNs - frames->front().beganNs) * 1e-9;
   figures.receivedHz = static_cast<double>(last.packets - first.packets) / spanS;
+  figures.unreadHz = static_cast<double>(last.unread - first.unread) / spanS;
   figures.followedShare = static_cast<double>(followed) / static_cast<double>(frames->size());
   return figures;
 }

@@ -22,7 +22,7 @@ enum class FloodKind { none, elsewhere, garbage, strangersState, hostsGarbage, h
 
 struct FloodFigures {
   std::vector<double> frameMs;
-  double sentHz = 0, receivedHz = 0;
+  double sentHz = 0, receivedHz = 0, unreadHz = 0;
   double followedShare = 0;  // of the frames that show a pose not older than kFollowedS
   double grownMiB = 0;       // resident memory, from before to after
   double linkShare = 0;      // of a core, that the thread takes which receives

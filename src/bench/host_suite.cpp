@@ -144,6 +144,7 @@ class HostSuite {
         sum.frameMs.insert(sum.frameMs.end(), figures->frameMs.begin(), figures->frameMs.end());
         sum.sentHz += figures->sentHz / rounds;
         sum.receivedHz += figures->receivedHz / rounds;
+        sum.unreadHz += figures->unreadHz / rounds;
         sum.followedShare += figures->followedShare / rounds;
         sum.grownMiB = std::max(sum.grownMiB, figures->grownMiB);
         sum.linkShare += figures->linkShare / rounds;
@@ -157,6 +158,7 @@ class HostSuite {
       add(name, what + ": frame, p99", frame[i].p99, "ms");
       add(name, what + ": sent", all[i].sentHz, "1/s");
       add(name, what + ": received", all[i].receivedHz, "1/s");
+      add(name, what + ": dropped unread", all[i].unreadHz, "1/s");
       add(name, what + ": frames that follow within 0.1 s", all[i].followedShare, "share");
       add(name, what + ": memory grown", all[i].grownMiB, "MiB");
       add(name, what + ": receiving thread", all[i].linkShare, "of a core");

@@ -14,11 +14,11 @@
 namespace eye {
 namespace {
 
-constexpr double kStepM = 1e-3;        // of height, from one number to the next
-constexpr double kStepDeg = 1e-6;      // of latitude: 7 m/s
-constexpr double kHeadingDeg = 0;      // north
-constexpr uint32_t kGarbageSeed = 13;  // any; the same garbage in every run
-constexpr size_t kGarbageKinds = 256;
+constexpr double kStepM = 1e-3;                           // of height, from one number to the next
+constexpr double kStepDeg = 1e-6;                         // of latitude: 7 m/s
+constexpr double kHeadingDeg = 0;                         // north
+constexpr uint32_t kGarbageSeed = 13;                     // any; the same garbage in every run
+constexpr size_t kGarbageKinds = 1024, kGarbageRun = 32;  // so many of one length behind one another
 
 cigi::Version versionOf(HostProtocol protocol) {
   return protocol == HostProtocol::cigi40 ? cigi::Version{4, 0} : cigi::Version{3, 3};
@@ -32,6 +32,32 @@ void sleepUntil(int64_t atNs) {
   const int64_t leftNs = atNs - monotonicNs();
   if (leftNs > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(leftNs));
 }
+
+// Sends those behind one another that are of one length together. A flood comes from the cores that draw: what sending
+// it costs must not hide what receiving does.
+class EqualRun {
+ public:
+  explicit EqualRun(const UdpSocket& socket) : socket_(socket) {}
+  void add(std::span<const std::byte> datagram) {
+    if (count_ == kMost || datagram.size() != eachBytes_) send();
+    eachBytes_ = datagram.size();
+    bytes_.insert(bytes_.end(), datagram.begin(), datagram.end());
+    ++count_;
+  }
+  void send() {
+    if (count_ > 1 && eachBytes_ > 0 && socket_.sendRun(bytes_, eachBytes_)) count_ = 0;
+    for (size_t i = 0; i < count_; ++i) (void)socket_.send(std::span(bytes_).subspan(i * eachBytes_, eachBytes_));
+    bytes_.clear();
+    count_ = 0;
+  }
+
+ private:
+  static constexpr size_t kMost = 64;
+
+  const UdpSocket& socket_;
+  std::vector<std::byte> bytes_;
+  size_t count_ = 0, eachBytes_ = 0;
+};
 
 }  // namespace
 
@@ -89,13 +115,14 @@ Flood::Flood(uint16_t port, double rateHz, Next next)
 void Flood::run(const std::stop_token& stop, uint16_t port, double rateHz, const Next& next) {
   const auto socket = UdpSocket::connectTo({kLoopbackAddress, port});
   if (!socket) return;
+  EqualRun run(*socket);
   uint64_t index = 0;
   constexpr int64_t kBurstNs = 1'000'000;
   for (int64_t atNs = startedNs_; !stop.stop_requested(); atNs += kBurstNs) {
     sleepUntil(atNs);
     const double timeS = static_cast<double>(monotonicNs() - startedNs_) * 1e-9;
-    for (const auto due = static_cast<uint64_t>(timeS * rateHz); index < due; ++index)
-      (void)socket->send(next(index, timeS));
+    for (const auto due = static_cast<uint64_t>(timeS * rateHz); index < due; ++index) run.add(next(index, timeS));
+    run.send();
     sent_ = index;
   }
 }
@@ -110,10 +137,12 @@ std::vector<std::vector<std::byte>> garbage(HostProtocol protocol) {
   constexpr size_t kMostBytes = 600;
   constexpr size_t kKeptBytes = 5;  // of both protocols: the version
   std::vector<std::vector<std::byte>> all;
+  size_t noiseBytes = 0;
   while (all.size() < kGarbageKinds) {
-    const bool isOwn = all.size() % 2 == 1;
-    std::vector<std::byte> datagram =
-        isOwn ? messageOf(protocol, Pose{}, 0, 0) : std::vector<std::byte>(random() % kMostBytes);
+    const size_t run = all.size() / kGarbageRun;
+    if (all.size() % kGarbageRun == 0) noiseBytes = random() % kMostBytes;
+    const bool isOwn = run % 2 == 1;
+    std::vector<std::byte> datagram = isOwn ? messageOf(protocol, Pose{}, 0, 0) : std::vector<std::byte>(noiseBytes);
     for (size_t i = isOwn ? kKeptBytes : 0; i < datagram.size(); ++i) datagram[i] = byte();
     if (!isBelieved(protocol, datagram)) all.push_back(std::move(datagram));
   }

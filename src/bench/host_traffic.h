@@ -69,7 +69,7 @@ class Flood {
 };
 
 // Datagrams that no protocol believes, the same for the same protocol: noise of any length, and the protocol's own
-// messages with bytes turned to noise.
+// messages with bytes turned to noise; some of each behind one another, as a flood sends them.
 std::vector<std::vector<std::byte>> garbage(HostProtocol protocol);
 
 // Sends a flight once at kHostRateHz over a bad link, from construction on; ends early on destruction.

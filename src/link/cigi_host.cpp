@@ -85,7 +85,7 @@ void ReplyListener::take(std::span<const std::byte> datagram, const Peer& sender
   heard_.overframings += start->overframing ? 1u : 0u;
   heard_.pagings += start->paging ? 1u : 0u;
   igFrame_ = start->igFrame;
-  if (start->hostFrame && channels_.heard(sender, *start->hostFrame))
+  if (start->hostFrame && channels_.heard(sender, *start->hostFrame, start->mode != IgMode::standby))
     spdlog::info("channel {} is back", toText(sender));
   for (const Packet& packet : message->packets) {
     const bool isHeight =

@@ -68,6 +68,13 @@ void Receiver::tell(const State& state, int64_t nowNs, SourceSample& sample) {
   if (sample.valid) sample.visibilityM = visibilityAt(state.air, sample.pose.position.altM);
 }
 
+std::optional<Outgoing> Receiver::farewell(int64_t nowNs) {
+  if (silent_) return std::nullopt;
+  auto reply = replies_.farewell(nowNs);
+  if (!reply) return std::nullopt;
+  return Outgoing{reply->receiver, std::move(reply->message)};
+}
+
 std::optional<Outgoing> Receiver::frameDone(const FrameReport& report, int64_t nowNs) {
   if (silent_) return std::nullopt;
   auto reply = replies_.frame(report, report.shownHostFrame, nowNs);

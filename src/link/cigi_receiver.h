@@ -36,6 +36,8 @@ class Receiver : public ListeningReceiver {
   static bool moves(const State& state) { return isCarriedOn(state.eye); }
   static void tell(const State& state, int64_t nowNs, SourceSample& sample);
 
+  // A channel that ends says that it is in standby, so that a host does not wait for it.
+  std::optional<Outgoing> farewell(int64_t nowNs);
   std::optional<Outgoing> frameDone(const FrameReport& report, int64_t nowNs);
 
  private:

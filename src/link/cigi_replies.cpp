@@ -39,6 +39,10 @@ void Replies::forget() {
   host_.reset();
 }
 
+bool Replies::speaks(int64_t nowNs) const {
+  return host_ && nowNs - heardNs_ <= kRepliesEndNs;
+}
+
 int8_t Replies::databaseStatus(const FrameReport& report) {
   if (wantedDatabase_ == 0) return databaseNumber_.value_or(0);
   if (databaseNumber_ && wantedDatabase_ != *databaseNumber_) return kNotAvailable;
@@ -59,13 +63,23 @@ std::optional<Replies::Reply> Replies::frame(const FrameReport& report, std::opt
   start.hostFrame = isThisHosts ? *shownHostFrame : 0;
   start.overframing = report.overBudget;
   start.paging = report.pagingBehind;
-  const bool speaks = host_ && nowNs - heardNs_ <= kRepliesEndNs;
-  if (!fixedReceiver_ && !speaks) return std::nullopt;
+  if (!fixedReceiver_ && !speaks(nowNs)) return std::nullopt;
   // Cut into fragments where a host asks for more than Ethernet carries at once: else a thousand answers, which a host
   // may want each frame, would wait for twenty frames.
   Builder builder(format_, start, kMaxLongMessageBytes);
   while (!answers_.empty() && builder.add(answers_.front())) answers_.pop_front();
   return Reply{fixedReceiver_ ? *fixedReceiver_ : *host_, builder.take()};
+}
+
+std::optional<Replies::Reply> Replies::farewell(int64_t nowNs) {
+  const std::lock_guard lock(mutex_);
+  if (!speaks(nowNs) || control_.mode == IgMode::standby) return std::nullopt;
+  StartOfFrame start;
+  start.igFrame = igFrame_++;
+  start.mode = IgMode::standby;
+  start.ticks = static_cast<uint32_t>(nowNs / 10'000);
+  start.hostFrame = 0;
+  return Reply{fixedReceiver_.value_or(*host_), Builder(format_, start).take()};
 }
 
 }  // namespace eye::cigi

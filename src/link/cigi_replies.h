@@ -36,8 +36,11 @@ class Replies {
   // no receiver is fixed. `shownHostFrame`: the host's frame that this one shows, by which a host that waits for all of
   // its channels knows that none has passed it over; absent before the first.
   std::optional<Reply> frame(const FrameReport& report, std::optional<uint32_t> shownHostFrame, int64_t nowNs);
+  // Render thread: there will be no more frames. Only to a host that has this channel operate.
+  std::optional<Reply> farewell(int64_t nowNs);
 
  private:
+  bool speaks(int64_t nowNs) const;
   int8_t databaseStatus(const FrameReport& report);
 
   const std::optional<Peer> fixedReceiver_;

@@ -11,10 +11,14 @@ constexpr size_t kMostChannels = 256;
 
 }  // namespace
 
-bool HostChannels::heard(const Peer& channel, uint32_t hostFrame) {
+bool HostChannels::heard(const Peer& channel, uint32_t hostFrame, bool operates) {
   const auto found = std::ranges::find(channels_, channel, &Channel::peer);
   if (found == channels_.end()) {
-    if (channels_.size() < kMostChannels) channels_.push_back({channel, hostFrame, false});
+    if (channels_.size() < kMostChannels) channels_.push_back({channel, hostFrame, false, operates});
+    return false;
+  }
+  if (std::exchange(found->operated, operates) && !operates) {
+    found->givenUp = true;
     return false;
   }
   found->hostFrame = hostFrame;

@@ -13,8 +13,8 @@ class HostChannels {
  public:
   explicit HostChannels(size_t expected) : expected_(expected) {}
 
-  // A Start of Frame. True for one that had been given up.
-  bool heard(const Peer& channel, uint32_t hostFrame);
+  // A Start of Frame. True for one that had been given up. One that operated and says that it does no longer ends.
+  bool heard(const Peer& channel, uint32_t hostFrame, bool operates = true);
   // As many channels as are expected have spoken at least once.
   bool complete() const { return channels_.size() >= expected_; }
   // All that are expected have shown the frame or a later one, but for those that were given up; one at least has.
@@ -29,7 +29,7 @@ class HostChannels {
   struct Channel {
     Peer peer;
     uint32_t hostFrame = 0;
-    bool givenUp = false;
+    bool givenUp = false, operated = false;
   };
   size_t expected_;
   std::vector<Channel> channels_;

@@ -24,6 +24,9 @@ class HostLock {
   bool mayPass(const Peer& sender, int64_t nowNs) const {
     return !host_ || *host_ == sender || nowNs - heardNs_ > silenceNs_;
   }
+  // The host, while nobody else may pass for half of the silence yet: those who are kept away from the socket until
+  // then lose nothing.
+  std::optional<Peer> speaker(int64_t nowNs) const { return nowNs - heardNs_ <= silenceNs_ / 2 ? host_ : std::nullopt; }
   // Of one that may pass and was understood. True when it was not the host before.
   bool heard(const Peer& sender, int64_t nowNs) {
     const bool isNew = !host_ || *host_ != sender;

@@ -15,6 +15,7 @@ namespace eye {
 struct HostCounts {
   uint64_t packets = 0;   // datagrams received, good and bad
   uint64_t rejected = 0;  // wrong size, version, sender, NaN, out of range
+  uint64_t unread = 0;    // beyond those: dropped by the system, of strangers in a flood or for want of room
   uint64_t lost = 0;      // gaps in the protocol's own numbering, where it has one
 };
 

@@ -10,10 +10,9 @@ namespace eye {
 namespace {
 
 constexpr int kLinkPollMs = 20;  // how long stopping may take; an idle link wakes up fifty times a second
-// A frame's worth of a busy host. More at once is a flood, of which waking up for each datagram would be the greater
-// part of the cost: it is let gather for a while, in the socket's buffer, which holds some 25 ms of 100,000 a second.
-constexpr size_t kCalmDatagrams = 32;
-constexpr auto kGather = std::chrono::milliseconds(1);
+// Of a flood, waking up for each datagram would be the greater part of the cost: it is let gather in the socket's
+// buffer, which on a system as it is installed holds 3 ms of 100,000 a second.
+constexpr auto kGather = std::chrono::milliseconds(2);
 constexpr int64_t kComplaintEveryNs =
     10'000'000'000;  // a wrong host sends 60 bad packets a second: one line of log in ten
 
@@ -23,6 +22,7 @@ LinkThread::LinkThread(const UdpSocket& socket, LinkProtocol& protocol, std::str
     : socket_(socket),
       protocol_(protocol),
       name_(std::move(name)),
+      gate_(socket, name_),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void LinkThread::stop() {
@@ -33,11 +33,14 @@ void LinkThread::stop() {
 void LinkThread::run(const std::stop_token& stop) {
   nameThread("link");
   while (!stop.stop_requested()) {
-    const size_t taken = socket_.wait(kLinkPollMs) ? drain() : 0;
+    const size_t taken = flood_.isOn() || socket_.wait(kLinkPollMs) ? drain() : 0;
     const int64_t nowNs = monotonicNs();
+    gate_.update(protocol_.soleSender(nowNs), nowNs);
+    counts_.unread = gate_.unread();
     protocol_.publish(counts_, nowNs);
     if (const auto outgoing = protocol_.due(nowNs)) (void)socket_.sendTo(outgoing->datagram, outgoing->receiver);
-    if (taken > kCalmDatagrams && taken < kBatchDatagrams) std::this_thread::sleep_for(kGather);
+    flood_.count(static_cast<int64_t>(taken), nowNs);
+    if (flood_.isOn() && taken < kBatchDatagrams) std::this_thread::sleep_for(kGather);
   }
 }
 
@@ -45,11 +48,14 @@ void LinkThread::run(const std::stop_token& stop) {
 size_t LinkThread::drain() {
   const TraceScope scope("link");
   const std::span<const Datagram> datagrams = batch_.receive(socket_);
+  const int64_t nowNs = monotonicNs();
+  const std::optional<Peer> sole = protocol_.soleSender(nowNs);
   for (const Datagram& datagram : datagrams) {
-    const int64_t nowNs = monotonicNs();
     ++counts_.packets;
     const auto taken = protocol_.take(datagram.payload, datagram.sender, nowNs);
-    if (!taken) reject(taken.error(), nowNs);
+    if (taken) continue;
+    reject(taken.error(), nowNs);
+    if (sole && datagram.sender != *sole) gate_.refused(datagram.sender);
   }
   return datagrams.size();
 }

@@ -6,7 +6,9 @@
 #include <thread>
 
 #include "link/datagram_batch.h"
+#include "link/flood_gauge.h"
 #include "link/host_state.h"
+#include "link/stranger_gate.h"
 #include "link/udp_socket.h"
 
 namespace eye {
@@ -25,6 +27,9 @@ class LinkProtocol {
   virtual Result<void> take(std::span<const std::byte> datagram, const Peer& sender, int64_t nowNs) = 0;
   // After some datagrams, and at least fifty times a second: puts what there is into the mailbox.
   virtual void publish(const HostCounts& counts, int64_t nowNs) = 0;
+  // Whom alone it believes now and for a while yet, however little of him comes: the datagrams of others need not be
+  // read.
+  virtual std::optional<Peer> soleSender(int64_t) const { return std::nullopt; }
   // What is to be sent now, of a protocol that asks for its packets. As often as publish().
   virtual std::optional<Outgoing> due(int64_t) { return std::nullopt; }
 };
@@ -49,6 +54,8 @@ class LinkThread {
   std::string name_;
   DatagramBatch batch_;
   HostCounts counts_;
+  FloodGauge flood_;
+  StrangerGate gate_;
   int64_t nextComplaintNs_ = 0;
   std::jthread thread_;  // last: it must not start before the rest is there, and joins first
 };

@@ -55,8 +55,11 @@ class LiveFeed final : public LinkProtocol {
     heard_.clear();
   }
 
+  std::optional<Peer> soleSender(int64_t nowNs) const override {
+    return Receiver::kManySenders ? std::nullopt : lock_.speaker(nowNs);
+  }
   std::optional<Outgoing> due(int64_t nowNs) override { return receiver_.due(nowNs); }
-  std::optional<Outgoing> farewell() const { return receiver_.farewell(); }
+  std::optional<Outgoing> farewell(int64_t nowNs) { return receiver_.farewell(nowNs); }
   std::optional<Outgoing> frameDone(const FrameReport& report, int64_t nowNs) {
     return receiver_.frameDone(report, nowNs);
   }

@@ -16,7 +16,7 @@ class LiveSource final : public StateSource {
         thread_(socket_, feed_, url) {}
   ~LiveSource() override {
     thread_.stop();  // first: what says goodbye asks for nothing afterwards
-    send(feed_.farewell());
+    send(feed_.farewell(monotonicNs()));
   }
   LiveSource(const LiveSource&) = delete;
   LiveSource& operator=(const LiveSource&) = delete;

@@ -36,9 +36,9 @@ struct ListeningReceiver {
   static constexpr bool kManySenders = false;
   static constexpr int64_t kCarryOnNs = eye::kCarryOnNs;
 
-  uint64_t lost() const { return 0; }                                // gaps in the protocol's own numbering
-  std::optional<Outgoing> due(int64_t) { return std::nullopt; }      // to be sent now
-  std::optional<Outgoing> farewell() const { return std::nullopt; }  // when the thread has ended
+  uint64_t lost() const { return 0; }                                 // gaps in the protocol's own numbering
+  std::optional<Outgoing> due(int64_t) { return std::nullopt; }       // to be sent now
+  std::optional<Outgoing> farewell(int64_t) { return std::nullopt; }  // when the thread has ended
   std::optional<Outgoing> frameDone(const FrameReport&, int64_t) { return std::nullopt; }  // render thread
 };
 

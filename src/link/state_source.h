@@ -30,11 +30,16 @@ struct SourceSample {
   // Where the host itself says its aircraft is at a moment, by rates; empty: it says none.
   std::function<Pose(int64_t)> motion;
   // From `atNs` for so long anybody may carry the aircraft on, by the host's rates or own ones, and no longer: this is
-  // the one bound. Silent for longer than this, the host is said to be.
+  // the one bound.
   int64_t carryOnNs = 0;
   bool live = false;      // fed by packets
   bool valid = false;     // false until the first packet of a live host
   bool finished = false;  // a recording or scenario is over (it holds its last pose)
+
+  // A host that has spoken, and not for longer than it may be carried on. `nowS`: of the clock above.
+  bool isSilent(double nowS) const {
+    return arrivedNs > 0 && nowS - static_cast<double>(arrivedNs) * 1e-9 > static_cast<double>(carryOnNs) * 1e-9;
+  }
 };
 
 // What a source is told of a frame that is complete, for those whose host wants to know.

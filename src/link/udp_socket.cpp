@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 #include <netdb.h>
+#include <netinet/udp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
+#include "link/udp_filter.h"
 #include "link/udp_group.h"
 
 namespace eye {
@@ -92,8 +95,8 @@ Result<UdpSocket> UdpSocket::listenOn(const Endpoint& endpoint, const std::strin
   if (reach == Reach::multicast)
     if (const auto joined = joinGroup(*fd, listened, *interface); !joined) return tl::unexpected(joined.error());
 
-  // Room for a second of bursts while this thread does not run: 60 Hz of the largest state packets, many times over.
-  const int receiveBytes = 1 << 20;
+  // Room for 65 ms of a flood while its reader does not run, where the system grants so much.
+  const int receiveBytes = 4 << 20;
   setsockopt(*fd, SOL_SOCKET, SO_RCVBUF, &receiveBytes, sizeof(receiveBytes));
   if (bind(*fd, asSockaddr(*address), sizeof(*address)) == 0) return udp;
 
@@ -173,6 +176,18 @@ size_t UdpSocket::receiveMany(std::span<mmsghdr> headers) const {
   return count < 0 ? 0 : static_cast<size_t>(count);
 }
 
+bool UdpSocket::admitOnly(const Peer& sender) const {
+  return eye::admitOnly(fd_, sender);
+}
+
+void UdpSocket::admitEveryone() const {
+  eye::admitEveryone(fd_);
+}
+
+uint32_t UdpSocket::dropped() const {
+  return droppedOf(fd_);
+}
+
 bool UdpSocket::sendTo(std::span<const std::byte> payload, const Peer& receiver) const {
   const sockaddr_in address = addressOf(receiver);
   return sendto(fd_, payload.data(), payload.size(), MSG_NOSIGNAL | MSG_DONTWAIT, asSockaddr(address),
@@ -187,6 +202,23 @@ SendOutcome UdpSocket::send(std::span<const std::byte> payload) const {
   // The refusal of an earlier datagram is reported instead of sending this one: try it again.
   if (errno == ECONNREFUSED && once() == whole) return SendOutcome::refused;
   return SendOutcome::failed;
+}
+
+bool UdpSocket::sendRun(std::span<const std::byte> payloads, size_t eachBytes) const {
+  iovec place{const_cast<std::byte*>(payloads.data()), payloads.size()};
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(uint16_t))> control{};
+  msghdr message{};
+  message.msg_iov = &place;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  cmsghdr* const header = CMSG_FIRSTHDR(&message);
+  header->cmsg_level = SOL_UDP;
+  header->cmsg_type = UDP_SEGMENT;
+  header->cmsg_len = CMSG_LEN(sizeof(uint16_t));
+  const auto each = static_cast<uint16_t>(eachBytes);
+  std::memcpy(CMSG_DATA(header), &each, sizeof(each));
+  return sendmsg(fd_, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(payloads.size());
 }
 
 void UdpSocket::allowBroadcast() const {

@@ -53,7 +53,15 @@ class UdpSocket {
   std::optional<std::span<const std::byte>> receiveFrom(std::span<std::byte> buffer, Peer& sender) const;
   // Of those that have arrived as many as there are headers; how many. For DatagramBatch, which has the buffers.
   size_t receiveMany(std::span<mmsghdr> headers) const;
+  // While a flood of others comes: see link/udp_filter.h. False where the system does not filter.
+  bool admitOnly(const Peer& sender) const;
+  void admitEveryone() const;
+  uint32_t dropped() const;  // datagrams that never could be received, modulo 2^32
+
   SendOutcome send(std::span<const std::byte> payload) const;  // of a socket from connectTo
+  // Datagrams of `eachBytes`, at most 64 and kMaxDatagramBytes together, with one call of the system, which makes them
+  // out of one: a fourth of the cost, or less. False where the system cannot. Of a socket from connectTo to one place.
+  bool sendRun(std::span<const std::byte> payloads, size_t eachBytes) const;
   // Of a listening socket, any thread. Never blocks: false when the network does not take it.
   bool sendTo(std::span<const std::byte> payload, const Peer& receiver) const;
   // sendTo() may go to a broadcast address from now on; the system refuses it else.

@@ -37,7 +37,7 @@ class XplaneReceiver : public ListeningReceiver {
     askedNs_ = nowNs;
     return Outgoing{xplane_, buildRposRequest(rateHz_)};
   }
-  std::optional<Outgoing> farewell() const { return Outgoing{xplane_, buildRposRequest(0)}; }
+  std::optional<Outgoing> farewell(int64_t) { return Outgoing{xplane_, buildRposRequest(0)}; }
 
  private:
   Peer xplane_;

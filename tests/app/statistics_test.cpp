@@ -61,7 +61,8 @@ TEST_CASE("a line of statistics has every key") {
   for (const char* key :
        {"requested", "loaded", "evicted", "resident", "ram_bytes", "gpu_bytes", "missing", "bytes_read"})
     CHECK(json["paging"].contains(key));
-  for (const char* key : {"packets", "rejected", "lost", "frame", "age_ms"}) CHECK(json["host"].contains(key));
+  for (const char* key : {"packets", "rejected", "unread", "lost", "frame", "age_ms"})
+    CHECK(json["host"].contains(key));
   CHECK(json["frame_ms"] == 7.25);
   CHECK(json["pose"][0] == 49.25);
   CHECK(json["pass_ms"]["geometry"] == 1.5);

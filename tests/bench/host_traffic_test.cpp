@@ -64,7 +64,8 @@ TEST_CASE("A flood of garbage is counted, costs no memory, and the host is follo
     const HostCounts counts = (*source)->sample(0).counts;
     CAPTURE(looked, followed, counts.packets, counts.rejected, flood.sentHz());
     CHECK(followed > looked * 9 / 10);
-    CHECK(counts.rejected > 5'000);
+    CHECK(counts.rejected >= 1'000);  // read, before it is told from a single datagram astray
+    CHECK(counts.rejected + counts.unread > 5'000);
     CHECK(counts.packets - counts.rejected < 200);  // the host's alone
     CHECK(residentMiB() - beforeMiB < 8);
   }

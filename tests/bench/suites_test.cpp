@@ -114,7 +114,7 @@ TEST_CASE("Suite host: every protocol, flood and link, with figures that can be"
   CHECK(report->summary["transport_delay_ms"] > 0);
   CHECK(report->summary["transport_delay_ms"] < 2000);
   std::set<std::string> protocols;
-  double answered = 0, followed = 0, received = 0;
+  double answered = 0, followed = 0, received = 0, unread = 0;
   for (const auto& row : report->rows) {
     requireKeys(row, {"protocol", "case", "value", "unit"});
     protocols.insert(row["protocol"].get<std::string>());
@@ -122,12 +122,14 @@ TEST_CASE("Suite host: every protocol, flood and link, with figures that can be"
     const std::string name = row["case"].get<std::string>();
     if (name == "a thousand heights a frame: answered") answered = row["value"];
     if (name == "flood of valid state from a stranger: frames that follow within 0.1 s") followed = row["value"];
-    if (name == "flood of garbage from a stranger: received") received = row["value"];
+    if (name == "flood of garbage from the host: received") received = row["value"];
+    if (name == "flood of garbage from a stranger: dropped unread") unread = row["value"];
   }
   CHECK(protocols == std::set<std::string>{"native-fdm", "CIGI 3.3", "CIGI 4.0", "CIGI"});
   CHECK(answered > 0.5);
   CHECK(followed > 0.5);
   CHECK(received > 1000);
+  CHECK(unread > 1000);
 }
 
 TEST_CASE("Suite stability: every figure has a limit, and keeps within it") {

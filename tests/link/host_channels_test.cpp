@@ -1,6 +1,8 @@
 // A host of several channels: who has shown what, whom it waits for, and what it asks and prints.
 #include "link/host_channels.h"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include "link/cigi_host.h"
@@ -46,6 +48,47 @@ TEST_CASE("host channels: one that was given up is not waited for until it speak
   channels.giveUp(kA);
   channels.giveUp(kB);
   CHECK_FALSE(channels.allHave(1));
+}
+
+TEST_CASE("host channels: one that ends, by standby after it operated, is not waited for; one that begins so is") {
+  HostChannels channels(2);
+  channels.heard(kA, 7);
+  channels.heard(kB, 0, false);
+  CHECK_FALSE(channels.allHave(7));
+  channels.heard(kB, 0, false);
+  CHECK(channels.behind(7) == std::vector<Peer>{kB});
+  channels.heard(kB, 6);
+  CHECK_FALSE(channels.heard(kB, 0, false));
+  CHECK(channels.allHave(7));
+  CHECK(channels.heard(kB, 7));
+}
+
+TEST_CASE("CIGI over UDP: a synchronous host of two channels goes on at once when one of them ends") {
+  std::vector<std::unique_ptr<StateSource>> all;
+  const uint16_t port = test::freePort();
+  constexpr const char* kGroup = "239.255.69.92";
+  for (int i = 0; i < 2; ++i) {
+    auto source = openStateSource(fmt::format("cigi://{}:{}?interface=127.0.0.1", kGroup, port));
+    REQUIRE(source);
+    all.push_back(std::move(*source));
+  }
+  const auto socket = UdpSocket::connectTo({kGroup, port}, "127.0.0.1");
+  ReplyListener replies(*socket, 2);
+  const auto show = [&](uint32_t number) {
+    (void)socket->send(hostMessage({3, 3}, {number, 0, 0, Pose{{46, 8, 1000}, 0, 0, 0}}));
+    for (const auto& channel : all) {
+      CHECK(test::waitFor(*channel, number).hostFrame == number);
+      channel->frameDone({});
+    }
+  };
+  show(1);
+  CHECK(replies.awaitChannels(1, 2000));
+  all.pop_back();
+  show(2);
+  CHECK(replies.awaitChannels(2, 200));
+  all.clear();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  CHECK_FALSE(replies.awaitChannels(2, 0));  // none is left
 }
 
 TEST_CASE("requests go out first and then in frames in which they are due, so that each has one answer") {
