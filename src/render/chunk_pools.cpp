@@ -109,13 +109,12 @@ ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage text
   using Use = vk::BufferUsageFlagBits;
   vertexBuffer_ =
       createBuffer(gpu, plan.vertices * sizeof(ChunkVertex), Use::eVertexBuffer | Use::eTransferDst, MemoryUse::device);
-  indexBuffer_ =
-      createBuffer(gpu, plan.indices * sizeof(uint16_t), Use::eIndexBuffer | Use::eTransferDst, MemoryUse::device);
-  const MemoryUse clusterUse = cullsOnHost ? MemoryUse::readBack : MemoryUse::device;
+  const MemoryUse cullUse = cullsOnHost ? MemoryUse::readBack : MemoryUse::device;
+  indexBuffer_ = createBuffer(gpu, plan.indices * sizeof(uint16_t), Use::eIndexBuffer | Use::eTransferDst, cullUse);
   clusterBuffer_ = createBuffer(gpu, plan.clusters * sizeof(shader::ClusterRecord),
-                                Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc, clusterUse);
+                                Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc, cullUse);
   visibleBuffer_ =
-      createBuffer(gpu, plan.clusters * sizeof(uint32_t), Use::eStorageBuffer | Use::eTransferDst, clusterUse);
+      createBuffer(gpu, plan.clusters * sizeof(uint32_t), Use::eStorageBuffer | Use::eTransferDst, cullUse);
   const uint64_t stagingBytes = std::max(kStagingBytes, 2 * chainBytes_ + (uint64_t{4} << 20));
   staging_ = createBuffer(gpu, stagingBytes, Use::eTransferSrc, MemoryUse::upload);
   runOnce(gpu, [this](const vk::raii::CommandBuffer& commands) {

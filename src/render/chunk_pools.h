@@ -23,8 +23,8 @@ std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uin
 
 class ChunkPools {
  public:
-  // `cullsOnHost`: clusters and their visibility are mapped, and written at once. usage: the budget is too small (says
-  // how much it needs). Throws vk::SystemError.
+  // `cullsOnHost`: indices, clusters and their visibility are mapped, the latter two written at once. usage: the budget
+  // is too small (says how much it needs). Throws vk::SystemError.
   static Result<std::unique_ptr<ChunkPools>> create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize,
                                                     bool cullsOnHost);
 
@@ -42,7 +42,7 @@ class ChunkPools {
   void staged();
 
   vk::Buffer vertexBuffer() const { return *vertexBuffer_.buffer; }
-  vk::Buffer indexBuffer() const { return *indexBuffer_.buffer; }
+  const GpuBuffer& indexBuffer() const { return indexBuffer_; }
   const GpuBuffer& clusterBuffer() const { return clusterBuffer_; }
   uint32_t clusterCapacity() const { return clusters_.capacity(); }
   // A word for each cluster: not 0 where the last late pass found it visible. 0 for a chunk that has just come.

@@ -11,11 +11,17 @@ namespace {
 using Use = vk::BufferUsageFlagBits;
 
 // More than a view of mountains takes at 1 pixel.
-constexpr size_t kFirstChunks = 1024, kFirstCandidates = 16384;
+constexpr size_t kFirstChunks = 1024, kFirstCandidates = 16384, kFirstIndices = size_t{1} << 20;
 
 size_t clustersOf(std::span<const ChunkDraw> draws) {
   size_t count = 0;
   for (const ChunkDraw& draw : draws) count += draw.gpu.clusterCount;
+  return count;
+}
+
+size_t indicesOf(std::span<const ChunkDraw> draws) {
+  size_t count = 0;
+  for (const ChunkDraw& draw : draws) count += draw.gpu.indexCount;
   return count;
 }
 
@@ -74,6 +80,10 @@ bool CullLists::reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, 
     made = true;
     spansMapPx_ = {0, 0};
   }
+  // No cluster is drawn twice.
+  if (onHost_)
+    grow(gpu, std::max(indicesOf(draws), kFirstIndices), sizeof(uint16_t), Use::eIndexBuffer, MemoryUse::upload,
+         packedCapacity_, packed_);
   return made;
 }
 
@@ -133,18 +143,20 @@ HostCull CullLists::hostCull(const ChunkPools& pools, const GpuBuffer& commands)
           .candidates = candidates_.as<const shader::CullCandidate>().first(candidateCount_),
           .clusters = pools.clusterBuffer().as<const shader::ClusterRecord>(),
           .visible = pools.visibleBuffer().as<uint32_t>(),
+          .indices = pools.indexBuffer().as<const uint16_t>(),
           .commands = commands.as<shader::DrawCommand>(),
-          .fates = fates_.as<uint32_t>()};
+          .fates = fates_.as<uint32_t>(),
+          .packed = packed_.as<uint16_t>()};
 }
 
 void CullLists::cullEarly(const ChunkPools& pools) {
-  eye::cullEarly(hostCull(pools, early_));
+  packedCount_ = eye::cullEarly(hostCull(pools, early_), 0);
 }
 
 void CullLists::cullLate(const ChunkPools& pools) {
   const auto pyramid = pyramid_.as<float>();
   hostPyramid_.build(depth_.as<const float>(), params().picturePx, params().mapPx, pyramid);
-  eye::cullLate(hostCull(pools, late_), pyramid);
+  packedCount_ = eye::cullLate(hostCull(pools, late_), pyramid, packedCount_);
 }
 
 CullCounts CullLists::counts() const {

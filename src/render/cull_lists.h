@@ -41,6 +41,8 @@ class CullLists {
   const GpuBuffer& paramsBuffer() const { return params_; }
   const GpuBuffer& chunksBuffer() const { return chunks_; }
   const GpuBuffer& candidatesBuffer() const { return candidates_; }
+  // With onHost: what earlyBuffer() and lateBuffer() draw from; else that is the pools'.
+  const GpuBuffer& packedIndices() const { return packed_; }
   const GpuBuffer& earlyBuffer() const { return early_; }
   const GpuBuffer& lateBuffer() const { return late_; }
   const GpuBuffer& fatesBuffer() const { return fates_; }
@@ -54,9 +56,11 @@ class CullLists {
 
   bool onHost_;
   DepthPyramid hostPyramid_;
-  size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0, spansCapacity_ = 0;
+  size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0, spansCapacity_ = 0,
+         packedCapacity_ = 0;
+  size_t packedCount_ = 0;  // indices of the frame's draws
   uint32_t chunkCount_ = 0, candidateCount_ = 0, candidatesByVertex_ = 0;
-  GpuBuffer params_, chunks_, candidates_, early_, late_, fates_, depth_, pyramid_, pixelSpans_;
+  GpuBuffer params_, chunks_, candidates_, early_, late_, fates_, depth_, pyramid_, pixelSpans_, packed_;
   glm::ivec2 spansMapPx_{0, 0}, spansPicturePx_{0, 0};  // what pixelSpans_ is for
   int longestSpanPx_ = 0;
 };

@@ -29,41 +29,41 @@ bool isOccluded(const CullParams& params, std::span<const float> pyramid, const 
   return true;
 }
 
-// Clusters of a chunk that are drawn and lie behind one another become one draw: the command of the first of them has
-// the indices of all.
-class Runs {
+// The commands, chunk by chunk.
+class DrawPacker {
  public:
-  explicit Runs(const HostCull& cull) : cull_(cull) {}
+  DrawPacker(const HostCull& cull, size_t packedCount) : cull_(cull), count_(packedCount) {}
 
-  // For each candidate in turn.
+  // For each candidate in turn, drawn or not.
   void put(size_t i, bool isDrawn) {
     cull_.commands[i] = {};
-    if (!isDrawn) {
-      isOpen_ = false;
-      return;
-    }
+    if (!isDrawn) return;
     const CullCandidate& candidate = cull_.candidates[i];
     const ClusterRecord& cluster = cull_.clusters[candidate.cluster];
-    if (isOpen_ && cull_.candidates[first_].chunk == candidate.chunk) {
-      cull_.commands[first_].indexCount += cluster.indexCount;
-      return;
+    if (first_ == kNone || cull_.candidates[first_].chunk != candidate.chunk) {
+      const CullChunk& chunk = cull_.chunks[candidate.chunk];
+      cull_.commands[i] = {0, 1, static_cast<uint32_t>(count_), chunk.vertexOffset, chunk.draw};
+      first_ = i;
     }
-    const CullChunk& chunk = cull_.chunks[candidate.chunk];
-    cull_.commands[i] = {cluster.indexCount, 1, cluster.firstIndex, chunk.vertexOffset, chunk.draw};
-    isOpen_ = true;
-    first_ = i;
+    std::ranges::copy(cull_.indices.subspan(cluster.firstIndex, cluster.indexCount),
+                      cull_.packed.subspan(count_).begin());
+    count_ += cluster.indexCount;
+    cull_.commands[first_].indexCount += cluster.indexCount;
   }
+  size_t count() const { return count_; }
 
  private:
+  static constexpr size_t kNone = ~size_t{0};
+
   const HostCull& cull_;
-  bool isOpen_ = false;  // the candidate before is drawn
-  size_t first_ = 0;     // of its run
+  size_t count_;          // indices packed
+  size_t first_ = kNone;  // that is drawn of the chunk at hand
 };
 
 }  // namespace
 
-void cullEarly(const HostCull& cull) {
-  Runs runs(cull);
+size_t cullEarly(const HostCull& cull, size_t packedCount) {
+  DrawPacker packer(cull, packedCount);
   for (size_t i = 0; i < cull.candidates.size(); ++i) {
     const CullCandidate& candidate = cull.candidates[i];
     const ClusterRecord& cluster = cull.clusters[candidate.cluster];
@@ -72,13 +72,14 @@ void cullEarly(const HostCull& cull) {
       const CullBox box = boxOf(cull.chunks[candidate.chunk], cluster);
       isDrawn = fateInView(cull.params, box, clipBoxOf(cull.params, box), cluster) == EYE_FATE_VISIBLE;
     }
-    runs.put(i, isDrawn);
+    packer.put(i, isDrawn);
     cull.fates[i] = (isDrawn ? EYE_FATE_EARLY : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
   }
+  return packer.count();
 }
 
-void cullLate(const HostCull& cull, std::span<const float> pyramid) {
-  Runs runs(cull);
+size_t cullLate(const HostCull& cull, std::span<const float> pyramid, size_t packedCount) {
+  DrawPacker packer(cull, packedCount);
   for (size_t i = 0; i < cull.candidates.size(); ++i) {
     const CullCandidate& candidate = cull.candidates[i];
     const ClusterRecord& cluster = cull.clusters[candidate.cluster];
@@ -89,11 +90,12 @@ void cullLate(const HostCull& cull, std::span<const float> pyramid) {
       fate = EYE_FATE_OCCLUDED;
     const uint32_t wasDrawn = cull.fates[i] & EYE_FATE_EARLY;
     const bool isDrawn = fate == EYE_FATE_VISIBLE && wasDrawn == 0;
-    runs.put(i, isDrawn);
+    packer.put(i, isDrawn);
     cull.visible[candidate.cluster] = fate == EYE_FATE_VISIBLE ? 1 : 0;
     cull.fates[i] =
         fate | wasDrawn | (isDrawn ? uint32_t{EYE_FATE_LATE} : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
   }
+  return packer.count();
 }
 
 }  // namespace eye

@@ -79,6 +79,10 @@ bool drawsSamples(const GpuDevice& gpu, vk::SampleCountFlagBits samples) {
   return static_cast<bool>(gpu.traits.sampleCounts & samples);
 }
 
+std::vector<uint16_t> copyOf(std::span<const uint16_t> values) {
+  return {values.begin(), values.end()};
+}
+
 double millisecondsSince(int64_t beganNs) {
   return static_cast<double>(monotonicNs() - beganNs) * 1e-6;
 }
@@ -290,7 +294,7 @@ void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& coun
     for (uint32_t done = 0; done < range.count(); done += batch) {
       const uint32_t first = range.first + done;
       if (first > 0) overlap->handOver(commands);
-      scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), lists->commands(), first,
+      scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), {lists->commands(), pools->indexBuffer()}, first,
                          std::min(batch, range.count() - done));
     }
   };
@@ -348,10 +352,12 @@ void Renderer::Impl::cullLate(const FrameInput& input) {
 // hidden, are not tested.
 void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts& counts) {
   const vk::raii::CommandBuffer& commands = frame.commands();
-  const auto draw = [&](HazeBy haze, const GpuBuffer& indirect, uint32_t first, uint32_t count) {
+  const auto draw = [&](HazeBy haze, const IndirectDraws& indirect, uint32_t first, uint32_t count) {
     scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), indirect, first, count);
   };
-  const auto drawClusters = [&](const GpuBuffer& indirect) {
+  const IndirectDraws skirts{lists->commands(), pools->indexBuffer()};
+  const auto drawClusters = [&](const GpuBuffer& clusterCommands) {
+    const IndirectDraws indirect{clusterCommands, cullLists->onHost() ? cullLists->packedIndices() : skirts.indices};
     const uint32_t byVertex = cullLists->candidatesByVertex();
     draw(HazeBy::vertex, indirect, 0, byVertex);
     draw(HazeBy::pixel, indirect, byVertex, cullLists->candidateCount() - byVertex);
@@ -373,8 +379,8 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
   }
   scene->begin(commands, targets, ScenePass::Pass::goesOn, input.background);
   if (!input.freezeCulling) drawClusters(cullLists->lateBuffer());
-  draw(HazeBy::vertex, lists->commands(), counts.byVertex.firstSkirt(), counts.byVertex.skirts);
-  draw(HazeBy::pixel, lists->commands(), counts.byPixel.firstSkirt(), counts.byPixel.skirts);
+  draw(HazeBy::vertex, skirts, counts.byVertex.firstSkirt(), counts.byVertex.skirts);
+  draw(HazeBy::pixel, skirts, counts.byPixel.firstSkirt(), counts.byPixel.skirts);
   drawAir(input);
   scene->end(commands);
   timestamps->mark(commands, "late");
@@ -457,16 +463,19 @@ CullReadBack Renderer::readCulling() const {
   const size_t candidates = lists.candidateCount();
   const shader::CullParams params = lists.params();
   const auto pixels = static_cast<size_t>(params.picturePx.x) * static_cast<size_t>(params.picturePx.y);
-  return {.params = params,
-          .chunks = readBuffer<shader::CullChunk>(gpu, lists.chunksBuffer(), lists.chunkCount()),
-          .candidates = readBuffer<shader::CullCandidate>(gpu, lists.candidatesBuffer(), candidates),
-          .clusters =
-              readBuffer<shader::ClusterRecord>(gpu, impl_->pools->clusterBuffer(), impl_->pools->clusterCapacity()),
-          .early = readBuffer<shader::DrawCommand>(gpu, lists.earlyBuffer(), candidates),
-          .late = readBuffer<shader::DrawCommand>(gpu, lists.lateBuffer(), candidates),
-          .fates = readBuffer<uint32_t>(gpu, lists.fatesBuffer(), candidates),
-          .depth = readBuffer<float>(gpu, lists.depthBuffer(), pixels),
-          .pyramid = readBuffer<float>(gpu, lists.pyramidBuffer(), pyramidLayout(params.mapPx).texels)};
+  return {
+      .params = params,
+      .chunks = readBuffer<shader::CullChunk>(gpu, lists.chunksBuffer(), lists.chunkCount()),
+      .candidates = readBuffer<shader::CullCandidate>(gpu, lists.candidatesBuffer(), candidates),
+      .clusters =
+          readBuffer<shader::ClusterRecord>(gpu, impl_->pools->clusterBuffer(), impl_->pools->clusterCapacity()),
+      .early = readBuffer<shader::DrawCommand>(gpu, lists.earlyBuffer(), candidates),
+      .late = readBuffer<shader::DrawCommand>(gpu, lists.lateBuffer(), candidates),
+      .fates = readBuffer<uint32_t>(gpu, lists.fatesBuffer(), candidates),
+      .depth = readBuffer<float>(gpu, lists.depthBuffer(), pixels),
+      .pyramid = readBuffer<float>(gpu, lists.pyramidBuffer(), pyramidLayout(params.mapPx).texels),
+      .indices = lists.onHost() ? copyOf(impl_->pools->indexBuffer().as<const uint16_t>()) : std::vector<uint16_t>{},
+      .packed = lists.onHost() ? copyOf(lists.packedIndices().as<const uint16_t>()) : std::vector<uint16_t>{}};
 }
 
 void Renderer::presentAgain() {

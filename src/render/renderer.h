@@ -125,6 +125,8 @@ struct CullReadBack {
   std::vector<shader::DrawCommand> early, late;
   std::vector<uint32_t> fates;
   std::vector<float> depth, pyramid;  // of the early pass; all levels
+  // Where the CPU culls: of the resident chunks, and what the commands draw; empty where they draw the former.
+  std::vector<uint16_t> indices, packed;
 };
 
 class Renderer final : public GpuStore {

@@ -258,33 +258,33 @@ void ScenePass::drawDepthAtCentres(const vk::raii::CommandBuffer& commands, cons
   info.setRenderArea({{0, 0}, {static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx)}});
   info.setLayerCount(1).setPDepthAttachment(&depth);
   beginWith(commands, info);
-  drawWith(depthAtCentres_, commands, gpu, pools, lists.draws(), lists.commands(), 0, count);
+  drawWith(depthAtCentres_, commands, gpu, pools, lists.draws(), {lists.commands(), pools.indexBuffer()}, 0, count);
   end(commands);
 }
 
 void ScenePass::drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
-                            const ChunkPools& pools, const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first,
-                            uint32_t count) const {
+                            const ChunkPools& pools, const GpuBuffer& draws, const IndirectDraws& indirect,
+                            uint32_t first, uint32_t count) const {
   if (count == 0) return;
   drawWith(haze == HazeBy::vertex ? terrain_ : wide_, commands, gpu, pools, draws, indirect, first, count);
 }
 
 void ScenePass::drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
                            const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t count) const {
-  drawWith(tinted_, commands, gpu, pools, draws, indirect, 0, count);
+  drawWith(tinted_, commands, gpu, pools, draws, {indirect, pools.indexBuffer()}, 0, count);
 }
 
 void ScenePass::drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::CommandBuffer& commands,
                          const GpuDevice& gpu, const ChunkPools& pools, const GpuBuffer& draws,
-                         const GpuBuffer& indirect, uint32_t first, uint32_t count) const {
+                         const IndirectDraws& indirect, uint32_t first, uint32_t count) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline);
   commands.bindVertexBuffers(0, {pools.vertexBuffer(), *draws.buffer}, {0, 0});
-  commands.bindIndexBuffer(pools.indexBuffer(), 0, vk::IndexType::eUint16);
+  commands.bindIndexBuffer(*indirect.indices.buffer, 0, vk::IndexType::eUint16);
   constexpr uint32_t kStride = sizeof(vk::DrawIndexedIndirectCommand);
   const uint32_t most = gpu.traits.mostDraws;
   for (uint32_t done = 0; done < count; done += std::min(most, count - done)) {
-    commands.drawIndexedIndirect(*indirect.buffer, vk::DeviceSize{first + done} * kStride, std::min(most, count - done),
-                                 kStride);
+    commands.drawIndexedIndirect(*indirect.commands.buffer, vk::DeviceSize{first + done} * kStride,
+                                 std::min(most, count - done), kStride);
   }
 }
 

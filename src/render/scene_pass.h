@@ -24,6 +24,12 @@ struct SceneOptions {
 // What `device` means there.
 TextureFilter filterOn(const GpuDevice& gpu, TextureFilter filter);
 
+// Indirect commands and the indices that they count in.
+struct IndirectDraws {
+  const GpuBuffer& commands;
+  const GpuBuffer& indices;
+};
+
 class ScenePass {
  public:
   // Throws vk::SystemError. `cache` gets what the driver compiles.
@@ -50,7 +56,7 @@ class ScenePass {
              const std::optional<glm::vec3>& background) const;
   // Indirect commands `first` to `first + count - 1`; their firstInstance is the DrawData's index.
   void drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
-                   const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first, uint32_t count) const;
+                   const GpuBuffer& draws, const IndirectDraws& indirect, uint32_t first, uint32_t count) const;
   // The depth at the pixels' centres into targets.depth, of pictures with several samples a pixel: all by itself.
   void drawDepthAtCentres(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const Targets& targets,
                           const ChunkPools& pools, const DrawLists& lists, uint32_t count) const;
@@ -66,7 +72,7 @@ class ScenePass {
  private:
   void beginWith(const vk::raii::CommandBuffer& commands, const vk::RenderingInfo& info) const;
   void drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
-                const ChunkPools& pools, const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t first,
+                const ChunkPools& pools, const GpuBuffer& draws, const IndirectDraws& indirect, uint32_t first,
                 uint32_t count) const;
 
   bool flips_ = false;

@@ -1,5 +1,7 @@
 #include "render/cull_mirror.h"
 
+#include <algorithm>
+
 #include "shared/cull.h"
 
 namespace eye::test {
@@ -73,7 +75,10 @@ CullMirror mirrorOf(const CullReadBack& gpu) {
   return mirror;
 }
 
-std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu, const std::vector<DrawCommand>& commands) {
+namespace {
+
+// Times that each candidate is drawn where commands draw from the pool: clusters that lie behind one another.
+std::vector<uint32_t> drawnFromPool(const CullReadBack& gpu, const std::vector<DrawCommand>& commands) {
   std::vector<uint32_t> times(gpu.candidates.size());
   for (size_t i = 0; i < commands.size(); ++i) {
     if (commands[i].instanceCount == 0) continue;
@@ -89,6 +94,34 @@ std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu, const std::vector<D
     }
   }
   return times;
+}
+
+// And where they draw packed indices: clusters of the chunk in their order, each with the indices that the pool has.
+std::vector<uint32_t> drawnPacked(const CullReadBack& gpu, const std::vector<DrawCommand>& commands) {
+  std::vector<uint32_t> times(gpu.candidates.size());
+  for (size_t i = 0; i < commands.size(); ++i) {
+    if (commands[i].instanceCount == 0) continue;
+    const CullChunk& chunk = gpu.chunks[gpu.candidates[i].chunk];
+    if (commands[i].firstInstance != chunk.draw || commands[i].vertexOffset != chunk.vertexOffset) return {};
+    auto next = gpu.packed.begin() + commands[i].firstIndex;
+    const auto end = next + commands[i].indexCount;
+    for (size_t k = i; next != end; ++k) {
+      if (k == gpu.candidates.size() || gpu.candidates[k].chunk != gpu.candidates[i].chunk) return {};
+      const ClusterRecord& cluster = gpu.clusters.at(gpu.candidates[k].cluster);
+      const auto first = gpu.indices.begin() + cluster.firstIndex;
+      if (cluster.indexCount > static_cast<size_t>(end - next) || !std::equal(first, first + cluster.indexCount, next))
+        continue;
+      ++times[k];
+      next += cluster.indexCount;
+    }
+  }
+  return times;
+}
+
+}  // namespace
+
+std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu, const std::vector<DrawCommand>& commands) {
+  return gpu.packed.empty() ? drawnFromPool(gpu, commands) : drawnPacked(gpu, commands);
 }
 
 }  // namespace eye::test
