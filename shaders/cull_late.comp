@@ -32,7 +32,7 @@ void main() {
   ClusterRecord cluster = clusters[candidate.cluster];
   CullBox box = boxOf(chunk, cluster);
   ClipBox clip = clipBoxOf(params, box);
-  uint fate = fateInView(box, clip, cluster);
+  uint fate = fateInView(params, box, clip, cluster.cone);
   if (fate == EYE_FATE_VISIBLE && isOccluded(mapRectOf(params, clip))) fate = EYE_FATE_OCCLUDED;
   uint wasDrawn = fates[i] & EYE_FATE_EARLY;
   bool isDrawn = isCandidate && fate == EYE_FATE_VISIBLE && wasDrawn == 0u;

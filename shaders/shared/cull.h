@@ -101,6 +101,12 @@ EYE_FUNCTION bool isBackFacing(CullBox box, uint cone) {
   return sumOf(box.centre_ecef, axis) >= limit;
 }
 
+// What can be told without the depth map.
+EYE_FUNCTION uint fateInView(CullParams params, CullBox box, ClipBox clip, uint cone) {
+  if (isOutsideFrustum(params, clip)) return EYE_FATE_OUTSIDE;
+  return isBackFacing(box, cone) ? EYE_FATE_BACK_FACING : EYE_FATE_VISIBLE;
+}
+
 // Where on the depth map a box lies and how near it comes.
 struct MapRect {
   ivec2 low, high;  // texels of the finest level, both within

@@ -57,9 +57,3 @@ DrawCommand commandOf(uint chunkIndex, int vertexOffset, uint drawIndex, Cluster
   }
   return DrawCommand(indexCount, indexCount != 0u ? 1u : 0u, cluster.firstIndex, vertexOffset, drawIndex);
 }
-
-// What can be told without the depth map.
-uint fateInView(CullBox box, ClipBox clip, ClusterRecord cluster) {
-  if (isOutsideFrustum(params, clip)) return EYE_FATE_OUTSIDE;
-  return isBackFacing(box, cluster.cone) ? EYE_FATE_BACK_FACING : EYE_FATE_VISIBLE;
-}

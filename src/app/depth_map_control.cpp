@@ -93,7 +93,8 @@ void DepthMapControl::learn(const FrameOutput& output, double pagingMs) {
   // On a device that is a CPU passes last as long as whatever else runs lets them: what they cost is CPU time.
   if (output.cpuMs > 0) {
     measured_.frameCostMs = std::max(output.cpuMs - pagingMs, 0.0);
-    measured_.passCostMs = std::min(pass_.observe(measured_.used, measured_.passCostMs), measured_.frameCostMs);
+    if (measured_.used != DepthMapChoice::off)
+      measured_.passCostMs = std::min(pass_.observe(measured_.used, measured_.passCostMs), measured_.frameCostMs);
   }
 }
 

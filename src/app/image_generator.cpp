@@ -234,7 +234,7 @@ FrameInput ImageGenerator::lastInput() const {
   return {.view = view_,
           .draws = draws_,
           .lighting = drawn_->lighting,
-          .groundDepthM = selection_.groundDepthM,
+          .hidesBelowHorizon = !drawn_->debug.freeze && selection_.hidesBelowHorizon,
           .background = options_.background,
           .depthMapPx = drawn_->depthMapPx,
           .overlay = {}};
@@ -286,7 +286,7 @@ Result<FrameRecord> ImageGenerator::frame(double timeS, bool readColour, bool re
     FrameInput input{.view = view_,
                      .draws = draws_,
                      .lighting = lighting,
-                     .groundDepthM = frozen ? std::nullopt : selection_.groundDepthM,
+                     .hidesBelowHorizon = !frozen && selection_.hidesBelowHorizon,
                      .background = options_.background,
                      .depthMapPx = record.depthMapPx,
                      .freezeCulling = frozen,

@@ -5,10 +5,10 @@
 namespace eye {
 
 double ShortestPass::observe(DepthMapChoice size, double passMs) {
-  if (size != size_) count_ = 0;
-  size_ = size;
-  newestMs_[count_++ % newestMs_.size()] = passMs;
-  return *std::min_element(newestMs_.begin(), newestMs_.begin() + std::min(count_, newestMs_.size()));
+  Newest& newest = bySize_[sizeIndex(size)];
+  newest.ms[newest.count++ % newest.ms.size()] = passMs;
+  const size_t known = std::min(newest.count, newest.ms.size());
+  return *std::min_element(newest.ms.begin(), newest.ms.begin() + static_cast<std::ptrdiff_t>(known));
 }
 
 }  // namespace eye

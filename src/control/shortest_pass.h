@@ -1,5 +1,5 @@
-// What culling takes on a device that is a CPU when nothing holds it up: short work of one thread, so the shortest of
-// its newest times at one size.
+// What culling takes on a device that is a CPU when nothing holds it up: short work, nearly all of one thread, so the
+// shortest of its newest times.
 #pragma once
 
 #include <array>
@@ -11,13 +11,16 @@ namespace eye {
 
 class ShortestPass {
  public:
-  // Of a frame that culled with `size`, or of one without, 0; returns the shortest of the newest times at that choice.
+  // Of a frame that culled with `size`; returns the shortest of the newest times with it, trials' among them: a size
+  // that is judged by few times looks dearer than one that is judged by many.
   double observe(DepthMapChoice size, double passMs);
 
  private:
-  std::array<double, 16> newestMs_{};
-  size_t count_ = 0;  // observed at size_
-  DepthMapChoice size_ = DepthMapChoice::off;
+  struct Newest {
+    std::array<double, 16> ms{};
+    size_t count = 0;
+  };
+  std::array<Newest, kDepthMapSizes> bySize_;
 };
 
 }  // namespace eye

@@ -15,6 +15,9 @@
 
 namespace eye {
 
+// No ground lies deeper under the ellipsoid: the deepest sea is 11 km.
+inline constexpr double kDeepestGroundM = 12000;
+
 // `none`: nothing is hidden, for scenes in which refraction lets the eye see over the horizon.
 enum class HorizonTest { ellipsoid, paper, none };
 

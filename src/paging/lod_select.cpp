@@ -211,7 +211,6 @@ void selectChunks(TerrainCache& cache, const View& view, const LodOptions& optio
   // Again with a lower ellipsoid where a sea's floor or something coarse, such as a root while its children are on
   // their way, sags below it: each time by more, the roots' error at most. With all in that is within the tolerance,
   // the first walk stands. A frame of its own for each, lest the last one's marks be taken for its own.
-  out.groundDepthM.reset();
   for (;;) {
     out.walked.clear();
     out.coarse.clear();
@@ -220,11 +219,12 @@ void selectChunks(TerrainCache& cache, const View& view, const LodOptions& optio
     walk.fromRoots();
     walk.reviveBesideCoarse();
     walk.reviveHalfSides();
-    if (walk.greatestDepthM() <= horizon.depthM()) out.groundDepthM = horizon.depthM();
-    if (options.culling == CullingScheme::none || options.horizon == HorizonTest::none || out.groundDepthM) break;
+    if (options.horizon == HorizonTest::none || walk.greatestDepthM() <= horizon.depthM()) break;
     horizon = Horizon(view.eyeEcefM, walk.greatestDepthM());
     cache.beginFrame();
   }
+  out.hidesBelowHorizon =
+      options.horizon != HorizonTest::none && horizon.reachM() > 0 && horizon.depthM() <= kDeepestGroundM;
   out.counts.drawn = static_cast<uint32_t>(out.walked.size());
   sortFrontToBack(out);
   assignSkirts(cache, out.draws);

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "geo/view.h"
@@ -48,9 +47,9 @@ struct Selection {
   std::vector<DrawnChunk> draws;    // front to back
   std::vector<WantedChunk> wanted;  // most urgent first; the children of one parent behind one another
   SelectionCounts counts;
-  // As far as the horizon all that is drawn lies above the ellipsoid lowered by so much: what meets that has met terrain.
-  // Nothing where the horizon was not asked for.
-  std::optional<double> groundDepthM;
+  // What is drawn hides all that meets the ellipsoid lowered by kDeepestGroundM, for an eye over the ground. Not while
+  // coarse terrain sags below that, and not without a horizon. The same whatever is culled.
+  bool hidesBelowHorizon = false;
 
   // The walk's own, kept from frame to frame so that it does not allocate.
   struct Coarse {  // drawn with an error above the tolerance

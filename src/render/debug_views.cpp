@@ -19,7 +19,7 @@ void DebugViews::record(const vk::raii::CommandBuffer& commands, const GpuDevice
                         const ScenePass& scene, const ChunkPools& pools, const Targets& targets, const CullLists& lists,
                         Timestamps& timestamps) const {
   if (input.tint != Tint::none) {
-    scene.begin(commands, targets, ScenePass::Pass::over, input.background);
+    scene.begin(commands, targets, ScenePass::Pass::over);
     scene.drawTinted(commands, gpu, pools, tints_.draws(), tints_.commands(), tints_.count());
     if (!input.background) scene.drawSky(commands);
     scene.end(commands);

@@ -9,12 +9,6 @@ namespace {
 
 using namespace shader;
 
-// What can be told without the depth map.
-uint32_t fateInView(const CullParams& params, const CullBox& box, const ClipBox& clip, const ClusterRecord& cluster) {
-  if (isOutsideFrustum(params, clip)) return EYE_FATE_OUTSIDE;
-  return isBackFacing(box, cluster.cone) ? EYE_FATE_BACK_FACING : EYE_FATE_VISIBLE;
-}
-
 // Behind the farthest depth of the rectangle's footprint. What shows is mostly told by the first row of texels.
 bool isOccluded(const CullParams& params, std::span<const float> pyramid, const MapRect& rect) {
   if (!rect.isKnown) return false;
@@ -70,7 +64,7 @@ size_t cullEarly(const HostCull& cull, size_t packedCount) {
     bool isDrawn = cull.visible[candidate.cluster] != 0;
     if (isDrawn && cull.params.isFrozen == 0) {
       const CullBox box = boxOf(cull.chunks[candidate.chunk], cluster);
-      isDrawn = fateInView(cull.params, box, clipBoxOf(cull.params, box), cluster) == EYE_FATE_VISIBLE;
+      isDrawn = fateInView(cull.params, box, clipBoxOf(cull.params, box), cluster.cone) == EYE_FATE_VISIBLE;
     }
     packer.put(i, isDrawn);
     cull.fates[i] = (isDrawn ? EYE_FATE_EARLY : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
@@ -85,7 +79,7 @@ size_t cullLate(const HostCull& cull, std::span<const float> pyramid, size_t pac
     const ClusterRecord& cluster = cull.clusters[candidate.cluster];
     const CullBox box = boxOf(cull.chunks[candidate.chunk], cluster);
     const ClipBox clip = clipBoxOf(cull.params, box);
-    uint32_t fate = fateInView(cull.params, box, clip, cluster);
+    uint32_t fate = fateInView(cull.params, box, clip, cluster.cone);
     if (fate == EYE_FATE_VISIBLE && isOccluded(cull.params, pyramid, mapRectOf(cull.params, clip)))
       fate = EYE_FATE_OCCLUDED;
     const uint32_t wasDrawn = cull.fates[i] & EYE_FATE_EARLY;

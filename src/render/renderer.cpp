@@ -288,7 +288,7 @@ void Renderer::Impl::drawAir(const FrameInput& input) {
 
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
   const vk::raii::CommandBuffer& commands = frame.commands();
-  scene->begin(commands, targets, ScenePass::Pass::whole, input.background);
+  scene->begin(commands, targets, ScenePass::Pass::whole);
   const uint32_t batch = overlap->batch(counts.draws());
   const auto draw = [&](HazeBy haze, const DrawRange& range) {
     for (uint32_t done = 0; done < range.count(); done += batch) {
@@ -320,7 +320,7 @@ void Renderer::Impl::cullEarly() {
 void Renderer::Impl::submitSky() {
   const vk::raii::CommandBuffer& commands = sky.commands();
   sky.begin();
-  scene->begin(commands, targets, ScenePass::Pass::between, std::nullopt);
+  scene->begin(commands, targets, ScenePass::Pass::between);
   scene->drawSky(commands);
   scene->end(commands);
   timestamps->mark(commands, "sky");
@@ -364,7 +364,7 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
   };
   cullEarly();
   timestamps->mark(commands, "cull_early");
-  scene->begin(commands, targets, ScenePass::Pass::first, input.background);
+  scene->begin(commands, targets, ScenePass::Pass::first);
   drawClusters(cullLists->earlyBuffer());
   scene->end(commands);
   timestamps->mark(commands, "early");
@@ -377,7 +377,7 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
     cullLate(input);
     timestamps->mark(commands, "cull_late");
   }
-  scene->begin(commands, targets, ScenePass::Pass::goesOn, input.background);
+  scene->begin(commands, targets, ScenePass::Pass::goesOn);
   if (!input.freezeCulling) drawClusters(cullLists->lateBuffer());
   draw(HazeBy::vertex, skirts, counts.byVertex.firstSkirt(), counts.byVertex.skirts);
   draw(HazeBy::pixel, skirts, counts.byPixel.firstSkirt(), counts.byPixel.skirts);
@@ -429,10 +429,12 @@ void Renderer::Impl::readTimes(FrameOutput& output) {
   passTimes.clear();
   if (!spans.empty()) output.gpuMs = spans.back().endMs;
   for (const Timestamps::Span& span : spans) {
+    const std::string_view name = span.name;
+    if (cullLists->onHost() && (name == "cull_early" || name == "cull_late")) {
+      passTimes.push_back({span.name, name == "cull_early" ? hostEarlyMs : hostLateMs});
+      continue;  // in the trace they are the render thread's
+    }
     passTimes.push_back({span.name, span.endMs - span.beginMs});
-    if (cullLists->onHost() && passTimes.back().name == std::string_view("cull_early"))
-      passTimes.back().ms = hostEarlyMs;
-    if (cullLists->onHost() && passTimes.back().name == std::string_view("cull_late")) passTimes.back().ms = hostLateMs;
     const auto at = [&](double ms) { return endNs - static_cast<int64_t>((output.gpuMs - ms) * 1e6); };
     traceSpan("GPU", span.name, at(span.beginMs), at(span.endMs));
   }

@@ -76,8 +76,9 @@ struct FrameInput {
   View view;
   std::span<const ChunkDraw> draws;  // front to back
   Lighting lighting;
-  // Terrain hides all that meets the ellipsoid lowered by so much, so no sky is drawn there; nothing: not known.
-  std::optional<double> groundDepthM{};
+  // The draws hide all that meets the ellipsoid lowered by kDeepestGroundM: no sky is drawn there. What shows through
+  // all the same, to an eye under the ground or so close to it that the near plane cuts it, has the horizon's colour.
+  bool hidesBelowHorizon = false;
   std::optional<glm::vec3> background;  // instead of the sky, without haze: for tests that look for holes
   // Occlusion culling with a depth map of this size, see CullPass; nothing: every draw as it is.
   std::optional<glm::ivec2> depthMapPx;

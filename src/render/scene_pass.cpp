@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "gpu/pipeline.h"
+#include "paging/horizon.h"
 #include "spirv/cloud_frag.h"
 #include "spirv/cloud_vert.h"
 #include "spirv/sky_dome_frag.h"
@@ -194,16 +195,17 @@ void ScenePass::bindTextures(const GpuDevice& gpu, const GpuImage& textures) {
 void ScenePass::placeSky(const FrameInput& input, bool byPixel) {
   const glm::vec4 up = frame().up_ecef;
   dome_.reset();
+  under_ = input.background;
   if (!byPixel && up.w < kDomeTopM) {
-    const double lowestRad = input.groundDepthM ? horizonRad(up.w, *input.groundDepthM) : domeRingRad(0);
+    const double lowestRad = input.hidesBelowHorizon ? horizonRad(up.w, kDeepestGroundM) : domeRingRad(0);
     dome_ = domePart(input.view, Vec3d(up), Vec3d(frame().domeAhead_ecef), lowestRad);
+    if (input.hidesBelowHorizon && !under_) under_ = glm::vec3(frame().horizon) * frame().skyLight.w;
   }
   eye::placeStars(input, placedStars_);
   std::ranges::copy(placedStars_, starBuffer_.as<StarInstance>().begin());
 }
 
-void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass,
-                      const std::optional<glm::vec3>& background) const {
+void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass) const {
   const bool isSampled = targets.isSampled(), begins = pass == Pass::first || pass == Pass::whole;
   // The last frame may have copied from both.
   const Usage copied = usageDiscarded(vk::PipelineStageFlagBits2::eTransfer);
@@ -222,8 +224,8 @@ void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& ta
     colour.setResolveImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
   }
   const bool goesOn = pass == Pass::goesOn || pass == Pass::between;
-  colour.setLoadOp(goesOn ? Load::eLoad : background ? Load::eClear : Load::eDontCare);
-  if (background) colour.setClearValue(vk::ClearColorValue(background->r, background->g, background->b, 1.0f));
+  colour.setLoadOp(goesOn ? Load::eLoad : under_ ? Load::eClear : Load::eDontCare);
+  if (under_) colour.setClearValue(vk::ClearColorValue(under_->r, under_->g, under_->b, 1.0f));
   depth.setImageView(isSampled ? *targets.depthSamples.view : *targets.depth.view);
   depth.setImageLayout(vk::ImageLayout::eDepthAttachmentOptimal);
   depth.setLoadOp(goesOn ? Load::eLoad : Load::eClear);

@@ -36,7 +36,7 @@ class ScenePass {
   ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const SceneOptions& options);
 
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
-  // What drawSky draws: the sky by dome or by pixel, and which stars.
+  // What drawSky draws: the sky by dome or by pixel, and which stars; and what is under all that is drawn.
   void placeSky(const FrameInput& input, bool byPixel);
   // In a mirrored view what is counterclockwise as seen from outside is clockwise on the screen; mirrored both ways it
   // is not.
@@ -48,12 +48,10 @@ class ScenePass {
   shader::FrameData& frame() { return frame_.as<shader::FrameData>()[0]; }
 
   // One render pass, the whole, or a first and one that goes on with what that has drawn, or draw it over: begin, draw,
-  // end. `between`: goes on, and is not the last. `background`: a flat colour instead of the sky. Colour and depth are
-  // left as targets, but before the last of several passes the colour of a picture with several samples a pixel is
-  // still in its samples.
+  // end. `between`: goes on, and is not the last. Colour and depth are left as targets, but before the last of several
+  // passes the colour of a picture with several samples a pixel is still in its samples.
   enum class Pass { whole, first, between, goesOn, over };
-  void begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass,
-             const std::optional<glm::vec3>& background) const;
+  void begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass) const;
   // Indirect commands `first` to `first + count - 1`; their firstInstance is the DrawData's index.
   void drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
                    const GpuBuffer& draws, const IndirectDraws& indirect, uint32_t first, uint32_t count) const;
@@ -78,7 +76,8 @@ class ScenePass {
   bool flips_ = false;
   GpuBuffer frame_, starBuffer_;
   std::vector<StarInstance> placedStars_;
-  std::optional<DomePart> dome_;  // nothing: by pixel
+  std::optional<DomePart> dome_;    // nothing: by pixel
+  std::optional<glm::vec3> under_;  // nothing: every pixel is drawn
   std::vector<shader::CloudFace> clouds_;
   vk::raii::Sampler sampler_{nullptr};
   vk::raii::DescriptorSetLayout setLayout_{nullptr};

@@ -69,12 +69,13 @@ void CullingRig::select(const View& view, const LodOptions& options, Load load) 
   makeDrawList(pager_->cache(), selection_, draws_);
 }
 
-Picture CullingRig::draw(const View& view, std::optional<glm::ivec2> mapPx) {
+Picture CullingRig::draw(const View& view, std::optional<glm::ivec2> mapPx, bool wholeSky) {
   FrameInput input;
   input.view = view;
   input.draws = draws_;
   input.lighting.sunDirectionEcef = sunDirectionEcef(2461120.0);  // an equinox, noon at Greenwich
   input.depthMapPx = mapPx;
+  input.hidesBelowHorizon = selection_.hidesBelowHorizon && !wholeSky;
   input.readColour = input.readDepth = true;
   const Result<FrameOutput> output = renderer_->drawFrame(input);
   if (!output) FAIL(output.error().message);

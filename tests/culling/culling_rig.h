@@ -29,8 +29,8 @@ class CullingRig {
   // Walks the forest; `settle`: and loads what it wants until nothing is missing.
   enum class Load { nothing, once, settle };
   void select(const View& view, const LodOptions& options, Load load);
-  // Of the newest selection. `mapPx`: with occlusion culling.
-  Picture draw(const View& view, std::optional<glm::ivec2> mapPx);
+  // Of the newest selection. `mapPx`: with occlusion culling. `wholeSky`: also where terrain is known to hide it.
+  Picture draw(const View& view, std::optional<glm::ivec2> mapPx, bool wholeSky = false);
 
   const Selection& selection() const { return selection_; }
   const TerrainCache& terrain() const { return pager_->cache(); }

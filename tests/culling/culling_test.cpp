@@ -59,7 +59,7 @@ class Comparison {
       ++sums_.buried;
       return;
     }
-    const Picture whole = rig_.draw(view, {});
+    const Picture whole = rig_.draw(view, {}, true);
     sums_.withTerrain += std::ranges::any_of(whole.depth, [](float depth) { return depth > 0; });
     if (before) check("frustum, before the rest was loaded", whole, *before);
     rig_.select(view, frustum, CullingRig::Load::nothing);

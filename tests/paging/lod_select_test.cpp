@@ -169,6 +169,27 @@ TEST_CASE("culling leaves out only what cannot be seen") {
   CHECK(below > 1000);
 }
 
+TEST_CASE("what is drawn is said to hide the sky below the horizon where it was asked, whatever is culled") {
+  size_t hides = 0;
+  for (uint32_t seed = 0; seed < 120; ++seed) {
+    const View view = randomView(seed);
+    TerrainCache cache = makeRandomForest(seed, view);
+    const Selection some = select(cache, view, CullingScheme::frustum);
+    CHECK(select(cache, view, CullingScheme::none).hidesBelowHorizon == some.hidesBelowHorizon);
+    CHECK_FALSE(select(cache, view, CullingScheme::frustum, 20, HorizonTest::none).hidesBelowHorizon);
+    hides += some.hidesBelowHorizon;
+    if (!some.hidesBelowHorizon) continue;
+    for (const DrawnChunk& draw : some.draws) {
+      const ChunkMeta& meta = cache.node(draw.node).meta;
+      const double reachM = std::sqrt(glm::dot(view.eyeEcefM, view.eyeEcefM) - std::pow(kSemiMinorM - 12000, 2));
+      if (draw.distanceM < 0.99 * reachM) CHECK(meta.minHeightM - meta.geometricErrorM > -kDeepestGroundM);
+    }
+  }
+  INFO(hides);
+  CHECK(hides > 3);
+  CHECK(hides < 110);
+}
+
 TEST_CASE("skirts hang where the neighbour is of another level and nowhere else, as deep as both errors") {
   size_t with = 0, without = 0;
   for (uint32_t seed = 0; seed < 40; ++seed) {

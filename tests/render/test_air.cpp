@@ -194,6 +194,33 @@ TEST_CASE("below the horizon that the dome ends at every ray meets the lowered e
   CHECK(horizonRad(-500, 400) < -1.57);
 }
 
+TEST_CASE("where no sky is drawn and no terrain hides it the horizon's colour shows, and nothing of the last frame") {
+  RendererOptions made;
+  made.widthPx = made.heightPx = 64;
+  made.samples = GENERATE(1, 4);
+  const auto renderer = makeRenderer(made);
+  if (!renderer) return;
+  const Pose below{{49.0, 20.0, 300}, 0, -60, 0}, far{{49.0, 20.0, 300}, 180, 0, 0};
+  const std::vector<ChunkDraw> draws = mountains(*renderer, 3, ecefFromGeodetic({49.1, 20.0, 2500}));
+  for (const bool culls : {false, true}) {
+    FrameInput input = lit(far, 40, 10, 60000);
+    input.view = makeView(far, symmetricFrustum(60, 64, 64, 1), 64, 64);
+    input.background = glm::vec3(1, 0, 1);
+    REQUIRE(renderer->drawFrame(input).has_value());
+    input = lit(below, 40, 10, 60000);
+    input.view = makeView(below, symmetricFrustum(60, 64, 64, 1), 64, 64);
+    input.draws = draws;
+    if (culls) input.depthMapPx = glm::ivec2(32, 32);
+    input.hidesBelowHorizon = true;
+    const auto frame = renderer->drawFrame(input);
+    REQUIRE(frame.has_value());
+    size_t magenta = 0;
+    for (size_t i = 0; i < frame->rgba.size(); i += 4) magenta += frame->rgba[i] > 250 && frame->rgba[i + 1] < 5;
+    CHECK(magenta == 0);
+    CHECK(frame->rgba[2] > 100);  // the horizon by day
+  }
+}
+
 TEST_CASE("fog lies on the ground: from a height the sky over it is that of a clear day") {
   const BothWays both = makeBoth();
   if (!both) return;

@@ -25,6 +25,12 @@ RendererOptions options() {
   return options;
 }
 
+RendererOptions culledBy(CullBy cullBy) {
+  RendererOptions made = options();
+  made.cullBy = cullBy;
+  return made;
+}
+
 struct Picture {
   std::vector<uint8_t> rgba;
   std::vector<float> depth;
@@ -60,11 +66,20 @@ size_t differing(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b)
   return count;
 }
 
+// What is drawn early is what the frame before found visible, in the pool's clusters, and this one in view and facing.
+std::vector<uint32_t> earlyOf(const CullReadBack& gpu, const CullMirror& cpu, const std::vector<bool>& wasVisible) {
+  std::vector<uint32_t> early;
+  for (size_t i = 0; i < gpu.candidates.size(); ++i) {
+    const uint32_t why = cpu.fates[i] & EYE_FATE_WHY;
+    early.push_back(wasVisible[gpu.candidates[i].cluster] && (why == EYE_FATE_VISIBLE || why == EYE_FATE_OCCLUDED));
+  }
+  return early;
+}
+
 }  // namespace
 
 TEST_CASE("occlusion culling changes no pixel, and the GPU culls as its CPU mirror") {
-  RendererOptions made = options();
-  made.cullBy = GENERATE(CullBy::compute, CullBy::host);
+  RendererOptions made = culledBy(GENERATE(CullBy::compute, CullBy::host));
   made.samples = GENERATE(1, 4);
   INFO(made.samples << " samples a pixel");
   const auto renderer = makeRenderer(made);
@@ -73,6 +88,7 @@ TEST_CASE("occlusion culling changes no pixel, and the GPU culls as its CPU mirr
   const glm::ivec2 maps[] = {{200, 150}, {64, 48}, {80, 61}, {37, 29}, {320, 240}, {1, 1}, {7, 1}};
   std::mt19937 random(7);
   CullCounts sum;
+  std::vector<bool> wasVisible(renderer->readCulling().clusters.size());
   for (int round = 0; round < 60; ++round) {
     INFO("pose " << round);
     FrameInput input = lookFrom(randomPose(random), kWidth, kHeight, round % 3 == 0 ? 90 : 40);
@@ -93,6 +109,9 @@ TEST_CASE("occlusion culling changes no pixel, and the GPU culls as its CPU mirr
       const CullMirror cpu = mirrorOf(gpu);
       REQUIRE((gpu.pyramid == cpu.pyramid));
       REQUIRE(differing(gpu.fates, cpu.fates) == 0);
+      REQUIRE(differing(earlyOf(gpu, cpu, wasVisible), withFlag(gpu.fates, EYE_FATE_EARLY)) == 0);
+      for (size_t i = 0; i < gpu.candidates.size(); ++i)
+        wasVisible[gpu.candidates[i].cluster] = (cpu.fates[i] & EYE_FATE_WHY) == EYE_FATE_VISIBLE;
       REQUIRE(differing(clustersDrawn(gpu, gpu.early), withFlag(gpu.fates, EYE_FATE_EARLY)) == 0);
       REQUIRE(differing(clustersDrawn(gpu, gpu.late), withFlag(gpu.fates, EYE_FATE_LATE)) == 0);
       sum.considered += culled.clusters.considered;
@@ -151,7 +170,7 @@ TEST_CASE("a rectangle's texels at its level are few and cover it, and no finer 
 }
 
 TEST_CASE("a chunk in a place that another has left is not taken for visible") {
-  const auto renderer = makeRenderer(options());
+  const auto renderer = makeRenderer(culledBy(GENERATE(CullBy::compute, CullBy::host)));
   if (!renderer) return;
   const MadeChunk chunk = makeChunk({49, 20, 49.02, 20.03}, ridgesM, flatTexture(128, 90, 120, 60));
   FrameInput input = lookFrom({{49.01, 20.015, 4000}, 0, -90, 0}, kWidth, kHeight);
@@ -172,7 +191,7 @@ TEST_CASE("a chunk in a place that another has left is not taken for visible") {
 }
 
 TEST_CASE("frozen culling draws what was visible when it froze, wherever the eye goes") {
-  const auto renderer = makeRenderer(options());
+  const auto renderer = makeRenderer(culledBy(GENERATE(CullBy::compute, CullBy::host)));
   if (!renderer) return;
   const std::vector<ChunkDraw> draws = mountains(*renderer, 7, ecefFromGeodetic({49, 20, 2500}));
   FrameInput input = lookFrom({{49, 20, ridgesM(49, 20) + 60}, 40, 0, 0}, kWidth, kHeight);

@@ -48,7 +48,9 @@ FrameInput lookBetweenRidges(const std::vector<ChunkDraw>& draws) {
 }  // namespace
 
 TEST_CASE("what culling makes of each cluster is coloured, in this view and from outside") {
-  const auto renderer = makeRenderer(options(true));
+  RendererOptions made = options(true);
+  made.cullBy = GENERATE(CullBy::compute, CullBy::host);
+  const auto renderer = makeRenderer(made);
   if (!renderer) return;
   const std::vector<ChunkDraw> draws = mountains(*renderer, 7, ecefFromGeodetic({49, 20, 2500}));
   FrameInput input = lookBetweenRidges(draws);
