@@ -37,6 +37,18 @@ void recordCommandsBarrier(const vk::raii::CommandBuffer& commands) {
 
 }  // namespace
 
+void recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets, const CullLists& lists) {
+  const std::array toCopy{imageBarrier(targets.depth, usageDepthTarget(), usageCopySource())};
+  recordBarriers(commands, toCopy);
+  const vk::Extent3D extent(static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx), 1);
+  commands.copyImageToBuffer(*targets.depth.image, vk::ImageLayout::eTransferSrcOptimal, *lists.depthBuffer().buffer,
+                             vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eDepth, 0, 0, 1}, {}, extent));
+  const std::array toTarget{imageBarrier(targets.depth, usageCopySource(), usageDepthTarget())};
+  recordBarriers(commands, toTarget);
+  recordMemoryBarrier(commands, Stage::eTransfer, Access::eTransferWrite, Stage::eComputeShader | Stage::eHost,
+                      Access::eShaderStorageRead | Access::eHostRead);
+}
+
 CullPass::CullPass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache) {
   std::vector<vk::DescriptorSetLayoutBinding> bindings;
   for (uint32_t binding = 0; binding < EYE_CULL_BINDINGS; ++binding)
@@ -100,19 +112,6 @@ void CullPass::recordEarly(const vk::raii::CommandBuffer& commands, const CullLi
 void CullPass::recordLevel(const vk::raii::CommandBuffer& commands, const shader::DepthLevel& level) const {
   commands.pushConstants<shader::DepthLevel>(*layout_, vk::ShaderStageFlagBits::eCompute, 0, level);
   commands.dispatch(groups(level.size.x, EYE_DEPTH_GROUP), groups(level.size.y, EYE_DEPTH_GROUP), 1);
-}
-
-void CullPass::recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets,
-                               const CullLists& lists) const {
-  const std::array toCopy{imageBarrier(targets.depth, usageDepthTarget(), usageCopySource())};
-  recordBarriers(commands, toCopy);
-  const vk::Extent3D extent(static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx), 1);
-  commands.copyImageToBuffer(*targets.depth.image, vk::ImageLayout::eTransferSrcOptimal, *lists.depthBuffer().buffer,
-                             vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eDepth, 0, 0, 1}, {}, extent));
-  const std::array toTarget{imageBarrier(targets.depth, usageCopySource(), usageDepthTarget())};
-  recordBarriers(commands, toTarget);
-  recordMemoryBarrier(commands, Stage::eTransfer, Access::eTransferWrite, Stage::eComputeShader | Stage::eHost,
-                      Access::eShaderStorageRead | Access::eHostRead);
 }
 
 void CullPass::recordDepthPyramid(const vk::raii::CommandBuffer& commands, const CullLists& lists) const {

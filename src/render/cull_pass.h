@@ -8,6 +8,9 @@
 
 namespace eye {
 
+// Copies the depth target, which is left as a target, for the pyramid.
+void recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets, const CullLists& lists);
+
 class CullPass {
  public:
   // Throws vk::SystemError. `cache` gets what the driver compiles.
@@ -20,8 +23,6 @@ class CullPass {
   void recordWarmUp(const vk::raii::CommandBuffer& commands) const;
   // Writes the early commands from last frame's visibility. Outside a render pass.
   void recordEarly(const vk::raii::CommandBuffer& commands, const CullLists& lists) const;
-  // Copies the depth target, which is left as a target, for the pyramid.
-  void recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets, const CullLists& lists) const;
   // Reduces the copied depth. Not where the CPU does it.
   void recordDepthPyramid(const vk::raii::CommandBuffer& commands, const CullLists& lists) const;
   // Writes the late commands, the fates (for the CPU) and the visibility for the next frame.

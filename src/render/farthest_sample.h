@@ -13,7 +13,7 @@ class FarthestSample {
   FarthestSample(const GpuDevice& gpu, const vk::raii::PipelineCache& cache);
   // Nothing that uses the set may be in flight.
   void bind(const GpuDevice& gpu, const Targets& targets, const CullLists& lists);
-  // As CullPass::recordDepthCopy, from targets.depthSamples, which are left as a target.
+  // As recordDepthCopy, from targets.depthSamples, which are left as a target.
   void record(const vk::raii::CommandBuffer& commands, const Targets& targets) const;
 
  private:

@@ -4,63 +4,14 @@
 #include <spdlog/spdlog.h>
 
 #include "gpu/pipeline_cache.h"
-#include "gpu/submission.h"
-#include "gpu/swapchain.h"
-#include "gpu/timestamps.h"
-#include "render/cull_pass.h"
-#include "render/debug_views.h"
-#include "render/farthest_sample.h"
 #include "render/frame_data.h"
 #include "render/haze_width.h"
-#include "render/overlay.h"
-#include "render/raster_overlap.h"
-#include "render/scene_pass.h"
+#include "render/renderer_impl.h"
 #include "render/warm_up.h"
 #include "telemetry/cpu_time.h"
 #include "telemetry/trace.h"
 
 namespace eye {
-
-// In order of construction; destroyed the other way round, after the device has come to rest.
-struct Renderer::Impl {
-  RendererOptions options;
-  std::unique_ptr<Window> window;  // null off-screen, as is the swapchain
-  std::unique_ptr<GpuDevice> gpu;
-  std::unique_ptr<Swapchain> swapchain;
-  vk::raii::PipelineCache cache{nullptr};
-  std::unique_ptr<ChunkPools> pools;
-  std::unique_ptr<DrawLists> lists;
-  std::unique_ptr<CullLists> cullLists;
-  std::unique_ptr<CullPass> cull;
-  std::unique_ptr<FarthestSample> farthest;  // null with one sample a pixel
-  std::unique_ptr<ScenePass> scene;
-  std::unique_ptr<RasterOverlap> overlap;
-  std::unique_ptr<DebugViews> debug;  // null unless the options ask for it
-  std::unique_ptr<Overlay> overlay;
-  std::unique_ptr<Timestamps> timestamps;
-  Targets targets;
-  Submission frame;              // the last, or only, commands of a frame
-  Submission sky;                // where the CPU culls: drawn by the device meanwhile
-  std::vector<ChunkDraw> draws;  // of the frame, in two parts by haze
-  std::vector<PassTime> passTimes;
-  std::vector<uint8_t> rgba;               // the picture read back, where the window's pixels are in another order
-  double hostEarlyMs = 0, hostLateMs = 0;  // of the frame's culling, where the CPU does it
-  bool skyIsDrawn = false;                 // of the frame at hand, by commands of its own
-  bool drawn = false;                      // the colour target holds a whole picture, in usageCopySource
-
-  vk::Format colourFormat() const;
-  void resizeTargets(int widthPx, int heightPx);
-  bool prepareCulling(const FrameInput& input, size_t byVertex);
-  void record(const FrameInput& input, const DrawCounts& counts, bool culls, std::optional<uint32_t> shown);
-  void drawAir(const FrameInput& input);
-  void recordScene(const FrameInput& input, const DrawCounts& counts);
-  void cullEarly();
-  void submitSky();
-  void cullLate(const FrameInput& input);
-  void recordCulledScene(const FrameInput& input, const DrawCounts& counts);
-  std::span<const uint8_t> pictureRgba();
-  void readTimes(FrameOutput& output);
-};
 
 namespace {
 
@@ -81,10 +32,6 @@ bool drawsSamples(const GpuDevice& gpu, vk::SampleCountFlagBits samples) {
 
 std::vector<uint16_t> copyOf(std::span<const uint16_t> values) {
   return {values.begin(), values.end()};
-}
-
-double millisecondsSince(int64_t beganNs) {
-  return static_cast<double>(monotonicNs() - beganNs) * 1e-6;
 }
 
 bool cullsOnHost(const RendererOptions& options, const GpuDevice& gpu) {
@@ -140,9 +87,11 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
     if (options.samples > 1) impl->farthest = std::make_unique<FarthestSample>(device, impl->cache);
     impl->lists = std::make_unique<DrawLists>(device);
     impl->cullLists = std::make_unique<CullLists>(device, cullsOnHost(options, device));
-    impl->cull = std::make_unique<CullPass>(device, impl->cache);
-    impl->cull->bind(device, *impl->pools, *impl->cullLists);
-    runOnce(device, [&](const vk::raii::CommandBuffer& commands) { impl->cull->recordWarmUp(commands); });
+    if (!impl->cullLists->onHost()) {
+      impl->cull = std::make_unique<CullPass>(device, impl->cache);
+      impl->cull->bind(device, *impl->pools, *impl->cullLists);
+      runOnce(device, [&](const vk::raii::CommandBuffer& commands) { impl->cull->recordWarmUp(commands); });
+    }
     if (options.debugViews) {
       impl->debug = std::make_unique<DebugViews>(device, impl->cache, impl->colourFormat());
       impl->debug->bind(device, *impl->cullLists);
@@ -271,7 +220,7 @@ bool Renderer::Impl::prepareCulling(const FrameInput& input, size_t byVertex) {
   const glm::ivec2 mapPx = usableMap(*input.depthMapPx, picturePx);
   if (!CullLists::fits(*gpu, input.draws, picturePx, mapPx)) return false;
   if (cullLists->reserve(*gpu, input.draws, picturePx, mapPx)) {
-    cull->bind(*gpu, *pools, *cullLists);
+    if (cull) cull->bind(*gpu, *pools, *cullLists);
     if (farthest) farthest->bind(*gpu, targets, *cullLists);
     if (debug) debug->bind(*gpu, *cullLists);
   }
@@ -303,87 +252,6 @@ void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& coun
   drawAir(input);
   scene->end(commands);
   timestamps->mark(commands, "scene");
-}
-
-void Renderer::Impl::cullEarly() {
-  if (!cullLists->onHost()) {
-    cull->recordEarly(frame.commands(), *cullLists);
-    return;
-  }
-  const TraceScope scope("cull early");
-  const int64_t beganNs = monotonicNs();
-  cullLists->cullEarly(*pools);
-  hostEarlyMs = millisecondsSince(beganNs);
-}
-
-// Where nothing is yet: what the late pass adds is drawn over it.
-void Renderer::Impl::submitSky() {
-  const vk::raii::CommandBuffer& commands = sky.commands();
-  sky.begin();
-  scene->begin(commands, targets, ScenePass::Pass::between);
-  scene->drawSky(commands);
-  scene->end(commands);
-  timestamps->mark(commands, "sky");
-  sky.submit(*gpu);
-  skyIsDrawn = true;
-}
-
-// By the CPU: when the commands so far have been executed, on a device that is a CPU at no more than a barrier's cost.
-// Other threads of the device draw the sky meanwhile.
-void Renderer::Impl::cullLate(const FrameInput& input) {
-  if (!cullLists->onHost()) {
-    cull->recordDepthPyramid(frame.commands(), *cullLists);
-    timestamps->mark(frame.commands(), "depth_map");
-    cull->recordLate(frame.commands(), *cullLists);
-    return;
-  }
-  timestamps->mark(frame.commands(), "depth_map");
-  frame.submit(*gpu);
-  if (!input.background) submitSky();
-  frame.wait(*gpu);
-  const TraceScope scope("cull late");
-  const int64_t beganNs = monotonicNs();
-  cullLists->cullLate(*pools);
-  hostLateMs = millisecondsSince(beganNs);
-  frame.begin();
-}
-
-// Two passes: what was visible in the last frame, then what else its depth does not hide. The skirts, few and mostly
-// hidden, are not tested.
-void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts& counts) {
-  const vk::raii::CommandBuffer& commands = frame.commands();
-  const auto draw = [&](HazeBy haze, const IndirectDraws& indirect, uint32_t first, uint32_t count) {
-    scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), indirect, first, count);
-  };
-  const IndirectDraws skirts{lists->commands(), pools->indexBuffer()};
-  const auto drawClusters = [&](const GpuBuffer& clusterCommands) {
-    const IndirectDraws indirect{clusterCommands, cullLists->onHost() ? cullLists->packedIndices() : skirts.indices};
-    const uint32_t byVertex = cullLists->candidatesByVertex();
-    draw(HazeBy::vertex, indirect, 0, byVertex);
-    draw(HazeBy::pixel, indirect, byVertex, cullLists->candidateCount() - byVertex);
-  };
-  cullEarly();
-  timestamps->mark(commands, "cull_early");
-  scene->begin(commands, targets, ScenePass::Pass::first);
-  drawClusters(cullLists->earlyBuffer());
-  scene->end(commands);
-  timestamps->mark(commands, "early");
-  if (!input.freezeCulling) {
-    if (farthest) {
-      farthest->record(commands, targets);
-    } else {
-      cull->recordDepthCopy(commands, targets, *cullLists);
-    }
-    cullLate(input);
-    timestamps->mark(commands, "cull_late");
-  }
-  scene->begin(commands, targets, ScenePass::Pass::goesOn);
-  if (!input.freezeCulling) drawClusters(cullLists->lateBuffer());
-  draw(HazeBy::vertex, skirts, counts.byVertex.firstSkirt(), counts.byVertex.skirts);
-  draw(HazeBy::pixel, skirts, counts.byPixel.firstSkirt(), counts.byPixel.skirts);
-  drawAir(input);
-  scene->end(commands);
-  timestamps->mark(commands, "late");
 }
 
 void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, bool culls,
