@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ struct Message {
   uint32_t unknown = 0;         // passed over by their size
   uint32_t rejected = 0;        // cut off, out of range or not where they belong
   std::string firstRejection;   // in words, of the first of these
+  // A hash of the whole datagram, where it has requests: by it the same one is known when it comes again.
+  std::optional<uint64_t> requestsHash;
 };
 
 // True when the first bytes are those of CIGI 3.x or 4.x, whatever else is in the datagram.

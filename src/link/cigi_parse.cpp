@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/byte_reader.h"
 #include "link/cigi.h"
 #include "link/cigi_layout_environment.h"
@@ -86,6 +88,20 @@ Frame frameAt(std::span<const std::byte> rest, const Format& format) {
     frame.id = reader.u16();
   }
   return reader.ok() ? frame : Frame{};
+}
+
+// Eight bytes at a time: multiplied by a large odd number, the upper half mixed back into the lower.
+uint64_t hashOf(std::span<const std::byte> datagram) {
+  constexpr uint64_t kFactor = 0x9e3779b97f4a7c15;
+  uint64_t hash = datagram.size();
+  const auto mix = [&](uint64_t value) {
+    hash = (hash ^ value) * kFactor;
+    hash ^= hash >> 32;
+  };
+  ByteReader reader(datagram, std::endian::native);
+  while (reader.remaining() >= sizeof(uint64_t)) mix(reader.u64());
+  while (reader.remaining() > 0) mix(reader.u8());
+  return hash;
 }
 
 class MessageReader {
@@ -183,7 +199,9 @@ Result<Message> parse(std::span<const std::byte> datagram) {
     reader.packet(rest.first(frame.bytes), frame.id);
     position += frame.bytes;
   }
-  return reader.take();
+  Message message = reader.take();
+  if (std::ranges::any_of(message.packets, isRequest)) message.requestsHash = hashOf(datagram);
+  return message;
 }
 
 }  // namespace eye::cigi
