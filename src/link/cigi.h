@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "link/cigi_fields.h"
 #include "link/cigi_packets.h"
+#include "link/datagram_shape.h"
 
 namespace eye::cigi {
 
@@ -29,6 +30,9 @@ struct Message {
 
 // True when the first bytes are those of CIGI 3.x or 4.x, whatever else is in the datagram.
 bool looksLikeCigi(std::span<const std::byte> datagram);
+
+// A message that parse() understands and that begins with an IG Control which it believes has one of these.
+std::span<const DatagramShape> hostShapes();
 
 // An error when the datagram as a whole is no CIGI of a supported version; a bad packet only counts as rejected.
 // Nothing of the datagram is referred to afterwards. A message whose header is rejected has the other packets still.

@@ -8,11 +8,28 @@
 #include "link/cigi_layout_host.h"
 #include "link/cigi_layout_ig.h"
 #include "link/cigi_shapes.h"
+#include "link/udp_socket.h"
 
 namespace eye::cigi {
 namespace {
 
 constexpr size_t kMinPacketBytes = 8;  // all packets are multiples of this; ids and sizes fit well within
+
+// IG Control's first eight bytes. 3.x: id, size, version; a minor version of at most 3 above; the byte order mark.
+constexpr uint32_t kHeader3 = kShape<IgControl>.id3 << 24 | 3 << 8, kHeader3Mask = 0xff00ff00;
+constexpr WordRange kSize3{0, 0x00ff0000, kOldHeaderBytes << 16, 0x00ff0000};
+constexpr WordRange kBig3[] = {wordIs(0, kHeader3Mask, kHeader3), kSize3, wordIs(4, 0xc000ffff, 0x8000)};
+constexpr WordRange kLittle3[] = {wordIs(0, kHeader3Mask, kHeader3), kSize3, wordIs(4, 0xc000ffff, 0x0080)};
+static_assert(kNewestMinor3 == 0x3f >> 4);
+// 4.x: size and id, in the sender's order; version.
+constexpr WordRange kVersion4 = wordIs(4, 0xff000000, 4 << 24);
+constexpr WordRange kBig4[] = {wordIs(0, 0xffffffff, kShape<IgControl>.bytes4 << 16), kVersion4};
+constexpr WordRange kLittle4[] = {wordIs(0, 0xffffffff, kShape<IgControl>.bytes4 << 24), kVersion4};
+static_assert(kShape<IgControl>.id4 == 0);
+constexpr DatagramShape kHostShapes[] = {{kOldHeaderBytes, kMaxDatagramBytes, kBig3},
+                                         {kOldHeaderBytes, kMaxDatagramBytes, kLittle3},
+                                         {kShape<IgControl>.bytes4, kMaxDatagramBytes, kBig4},
+                                         {kShape<IgControl>.bytes4, kMaxDatagramBytes, kLittle4}};
 
 uint8_t byteAt(std::span<const std::byte> bytes, size_t at) {
   return std::to_integer<uint8_t>(bytes[at]);
@@ -172,6 +189,10 @@ class MessageReader {
 };
 
 }  // namespace
+
+std::span<const DatagramShape> hostShapes() {
+  return kHostShapes;
+}
 
 bool looksLikeCigi(std::span<const std::byte> datagram) {
   return formatOf(datagram).has_value();
