@@ -9,10 +9,10 @@ namespace {
 
 constexpr double kMiB = 1 << 20;
 
-void line(const char* name, const char* format, double a, double b = 0, double c = 0) {
+void line(const char* name, const char* format, double a, double b = 0, double c = 0, double d = 0) {
   ImGui::TextDisabled("%-9s", name);
   ImGui::SameLine();
-  ImGui::Text(format, a, b, c);
+  ImGui::Text(format, a, b, c, d);
 }
 
 }  // namespace
@@ -52,9 +52,12 @@ void StatisticsOverlay::draw(const std::string& device, const std::string& sourc
        r.selection.missing, static_cast<double>(r.paging.bytesRead) / kMiB);
   line("memory", "GPU %.0f MiB, RAM %.0f MiB", static_cast<double>(r.paging.gpuBytes) / kMiB,
        static_cast<double>(r.paging.ramBytes) / kMiB);
-  if (r.hostAgeMs >= 0)
-    line("host", "%.0f packets, %.0f rejected, age %.1f ms", static_cast<double>(r.host.packets),
-         static_cast<double>(r.host.rejected), r.hostAgeMs);
+  const auto packets = static_cast<double>(r.host.packets), rejected = static_cast<double>(r.host.rejected);
+  if (r.hostAgeMs >= 0 && r.host.unread == 0)
+    line("host", "%.0f packets, %.0f rejected, age %.1f ms", packets, rejected, r.hostAgeMs);
+  if (r.hostAgeMs >= 0 && r.host.unread > 0)
+    line("host", "%.0f packets, %.0f rejected, %.0f unread, age %.1f ms", packets, rejected,
+         static_cast<double>(r.host.unread), r.hostAgeMs);
   if (r.hostAgeMs >= 0)
     line("shown", r.eye.stampedByHost ? "%.1f ms behind; jitter %.1f, host's clock" : "%.1f ms behind; jitter %.1f",
          r.eye.delayMs, r.eye.jitterMs);

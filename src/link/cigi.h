@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "base/error.h"
 #include "link/cigi_fields.h"
 #include "link/cigi_packets.h"
+#include "link/datagram_shape.h"
 
 namespace eye::cigi {
 
@@ -22,10 +24,15 @@ struct Message {
   uint32_t unknown = 0;         // passed over by their size
   uint32_t rejected = 0;        // cut off, out of range or not where they belong
   std::string firstRejection;   // in words, of the first of these
+  // A hash of the whole datagram, where it has requests: by it the same one is known when it comes again.
+  std::optional<uint64_t> requestsHash;
 };
 
 // True when the first bytes are those of CIGI 3.x or 4.x, whatever else is in the datagram.
 bool looksLikeCigi(std::span<const std::byte> datagram);
+
+// A message that parse() understands and that begins with an IG Control which it believes has one of these.
+std::span<const DatagramShape> hostShapes();
 
 // An error when the datagram as a whole is no CIGI of a supported version; a bad packet only counts as rejected.
 // Nothing of the datagram is referred to afterwards. A message whose header is rejected has the other packets still.

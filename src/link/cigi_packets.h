@@ -249,4 +249,10 @@ using Packet = std::variant<IgControl, Entity, ViewControl, ViewDefinition, Velo
                             Atmosphere, Weather, HeightRequest, SightSegmentRequest, SightVectorRequest, StartOfFrame,
                             HeightResponse, HeightExtendedResponse, SightResponse, SightExtendedResponse>;
 
+// A question about the ground.
+inline bool isRequest(const Packet& packet) {
+  return std::holds_alternative<HeightRequest>(packet) || std::holds_alternative<SightSegmentRequest>(packet) ||
+         std::holds_alternative<SightVectorRequest>(packet);
+}
+
 }  // namespace eye::cigi

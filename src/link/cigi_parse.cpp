@@ -1,16 +1,35 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/byte_reader.h"
 #include "link/cigi.h"
 #include "link/cigi_layout_environment.h"
 #include "link/cigi_layout_host.h"
 #include "link/cigi_layout_ig.h"
 #include "link/cigi_shapes.h"
+#include "link/udp_socket.h"
 
 namespace eye::cigi {
 namespace {
 
 constexpr size_t kMinPacketBytes = 8;  // all packets are multiples of this; ids and sizes fit well within
+
+// IG Control's first eight bytes. 3.x: id, size, version; a minor version of at most 3 above; the byte order mark.
+constexpr uint32_t kHeader3 = kShape<IgControl>.id3 << 24 | 3 << 8, kHeader3Mask = 0xff00ff00;
+constexpr WordRange kSize3{0, 0x00ff0000, kOldHeaderBytes << 16, 0x00ff0000};
+constexpr WordRange kBig3[] = {wordIs(0, kHeader3Mask, kHeader3), kSize3, wordIs(4, 0xc000ffff, 0x8000)};
+constexpr WordRange kLittle3[] = {wordIs(0, kHeader3Mask, kHeader3), kSize3, wordIs(4, 0xc000ffff, 0x0080)};
+static_assert(kNewestMinor3 == 0x3f >> 4);
+// 4.x: size and id, in the sender's order; version.
+constexpr WordRange kVersion4 = wordIs(4, 0xff000000, 4 << 24);
+constexpr WordRange kBig4[] = {wordIs(0, 0xffffffff, kShape<IgControl>.bytes4 << 16), kVersion4};
+constexpr WordRange kLittle4[] = {wordIs(0, 0xffffffff, kShape<IgControl>.bytes4 << 24), kVersion4};
+static_assert(kShape<IgControl>.id4 == 0);
+constexpr DatagramShape kHostShapes[] = {{kOldHeaderBytes, kMaxDatagramBytes, kBig3},
+                                         {kOldHeaderBytes, kMaxDatagramBytes, kLittle3},
+                                         {kShape<IgControl>.bytes4, kMaxDatagramBytes, kBig4},
+                                         {kShape<IgControl>.bytes4, kMaxDatagramBytes, kLittle4}};
 
 uint8_t byteAt(std::span<const std::byte> bytes, size_t at) {
   return std::to_integer<uint8_t>(bytes[at]);
@@ -88,6 +107,20 @@ Frame frameAt(std::span<const std::byte> rest, const Format& format) {
   return reader.ok() ? frame : Frame{};
 }
 
+// Eight bytes at a time: multiplied by a large odd number, the upper half mixed back into the lower.
+uint64_t hashOf(std::span<const std::byte> datagram) {
+  constexpr uint64_t kFactor = 0x9e3779b97f4a7c15;
+  uint64_t hash = datagram.size();
+  const auto mix = [&](uint64_t value) {
+    hash = (hash ^ value) * kFactor;
+    hash ^= hash >> 32;
+  };
+  ByteReader reader(datagram, std::endian::native);
+  while (reader.remaining() >= sizeof(uint64_t)) mix(reader.u64());
+  while (reader.remaining() > 0) mix(reader.u8());
+  return hash;
+}
+
 class MessageReader {
  public:
   explicit MessageReader(const Format& format) { message_.format = format; }
@@ -157,6 +190,10 @@ class MessageReader {
 
 }  // namespace
 
+std::span<const DatagramShape> hostShapes() {
+  return kHostShapes;
+}
+
 bool looksLikeCigi(std::span<const std::byte> datagram) {
   return formatOf(datagram).has_value();
 }
@@ -183,7 +220,9 @@ Result<Message> parse(std::span<const std::byte> datagram) {
     reader.packet(rest.first(frame.bytes), frame.id);
     position += frame.bytes;
   }
-  return reader.take();
+  Message message = reader.take();
+  if (std::ranges::any_of(message.packets, isRequest)) message.requestsHash = hashOf(datagram);
+  return message;
 }
 
 }  // namespace eye::cigi

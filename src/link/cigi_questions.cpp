@@ -11,6 +11,10 @@ namespace {
 constexpr size_t kMaxRepeating = 256;                          // requests with an update period
 constexpr size_t kMaxQuestions = kMaxPackets + kMaxRepeating;  // all that one message can ask
 
+// A datagram that a network has doubled comes again within this; a host that got no answer asks again later than that.
+constexpr int64_t kDoubledNs = 100'000'000;
+constexpr size_t kMaxAsked = 64;  // datagrams; a thousand heights are a third of them
+
 uint16_t idOf(const GroundRequest& request) {
   return std::visit([](const auto& r) { return r.id; }, request);
 }
@@ -20,6 +24,16 @@ bool isSameRequest(const GroundRequest& a, const GroundRequest& b) {
 }
 
 }  // namespace
+
+// True for the same datagram again, within a while of its first.
+bool Session::isDoubled(const Message& message, int64_t arrivedNs) {
+  if (!message.requestsHash) return false;
+  std::erase_if(asked_, [&](const Asked& asked) { return arrivedNs - asked.arrivedNs > kDoubledNs; });
+  if (std::ranges::find(asked_, *message.requestsHash, &Asked::requestsHash) != asked_.end()) return true;
+  if (asked_.size() == kMaxAsked) asked_.erase(asked_.begin());
+  asked_.push_back({*message.requestsHash, arrivedNs});
+  return false;
+}
 
 void Session::ask(const GroundRequest& request, const Stamp& stamp, const std::string& name) {
   std::erase_if(repeating_, [&](const Repeating& r) { return isSameRequest(r.request, request); });

@@ -25,6 +25,7 @@ class Receiver : public ListeningReceiver {
 
   // A host's message: with an IG Control that is believed.
   Result<Message> parse(std::span<const std::byte> datagram) const;
+  static std::span<const DatagramShape> shapes() { return hostShapes(); }
   bool concerns(const Message&, int64_t) const { return true; }
   void reset();
   std::string greeting(const Message& message) const;

@@ -53,6 +53,7 @@ void Session::reset() {
   edges_ = {};
   sky_ = {};
   air_ = {};
+  asked_.clear();
   repeating_.clear();
   questions_.clear();
   started_ = false;
@@ -118,8 +119,9 @@ bool Session::take(const Message& message, int64_t atNs, const std::string& name
   const bool isInOrder = header(*control, name, arrivedNs.value_or(atNs));
   const bool isStandby = control_.mode == IgMode::standby;
   const Stamp stamp{control->hostFrame, isInOrder ? atNs : atNs_};
+  const bool isAsked = isDoubled(message, arrivedNs.value_or(atNs));
   for (const Packet& p : message.packets)
-    if (!isStandby && (isInOrder || isAskedOnce(p))) packet(p, stamp, name);
+    if (!isStandby && (isInOrder || isAskedOnce(p)) && !(isAsked && isRequest(p))) packet(p, stamp, name);
   if (!isInOrder) return false;
   atNs_ = atNs;
   if (isStandby) return true;

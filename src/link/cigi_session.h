@@ -38,7 +38,7 @@ class Session {
 
   // `atNs`: when what the message says was true; `name`: of the link, for remarks in the log; `arrivedNs`: when it
   // came, where that is not the same. False: a newer frame has overtaken the message, and nothing of it is taken but
-  // its questions that are asked once.
+  // its questions that are asked once. A datagram that a network has doubled asks nothing a second time.
   bool take(const Message& message, int64_t atNs, const std::string& name, std::optional<int64_t> arrivedNs = {});
   // Forgets everything but what is counted: for a new host.
   void reset();
@@ -62,6 +62,7 @@ class Session {
   void take(const CelestialSphere& sphere, int64_t atNs);
   void take(const Weather& weather);
   // cigi_questions.cpp
+  bool isDoubled(const Message& message, int64_t arrivedNs);
   void ask(const GroundRequest& request, const Stamp& stamp, const std::string& name);
   void repeatQuestions(int64_t nowNs);
   GroundQuestion resolved(const GroundRequest& request, uint32_t hostFrame, int64_t nowNs) const;
@@ -95,6 +96,11 @@ class Session {
     uint8_t everyFrames;
     uint32_t answeredFrame;  // of the host
   };
+  struct Asked {
+    uint64_t requestsHash;
+    int64_t arrivedNs;
+  };
+  std::vector<Asked> asked_;  // lately, oldest first
   std::vector<Repeating> repeating_;
   std::vector<GroundQuestion> questions_;
   std::set<Remark> remarks_;  // said already

@@ -6,9 +6,10 @@
 #include <thread>
 
 #include "link/datagram_batch.h"
+#include "link/datagram_shape.h"
+#include "link/flood_gate.h"
 #include "link/flood_gauge.h"
 #include "link/host_state.h"
-#include "link/stranger_gate.h"
 #include "link/udp_socket.h"
 
 namespace eye {
@@ -30,6 +31,9 @@ class LinkProtocol {
   // Whom alone it believes now and for a while yet, however little of him comes: the datagrams of others need not be
   // read.
   virtual std::optional<Peer> soleSender(int64_t) const { return std::nullopt; }
+  // What a datagram looks like at the least: one that has none of the shapes is never believed. Nothing: any may be.
+  // Always the same.
+  virtual std::span<const DatagramShape> shapes() const { return {}; }
   // What is to be sent now, of a protocol that asks for its packets. As often as publish().
   virtual std::optional<Outgoing> due(int64_t) { return std::nullopt; }
 };
@@ -46,6 +50,7 @@ class LinkThread {
  private:
   void run(const std::stop_token& stop);
   size_t drain();
+  void gather(size_t taken, int64_t nowNs);
   void reject(const Error& reason, int64_t nowNs);
 
   // All of these belong to the link thread once it runs.
@@ -55,7 +60,8 @@ class LinkThread {
   DatagramBatch batch_;
   HostCounts counts_;
   FloodGauge flood_;
-  StrangerGate gate_;
+  FloodGate gate_;
+  int64_t gatheredNs_ = 0;  // when the batch of a flood was due, or what came instead of one
   int64_t nextComplaintNs_ = 0;
   std::jthread thread_;  // last: it must not start before the rest is there, and joins first
 };

@@ -58,6 +58,7 @@ class LiveFeed final : public LinkProtocol {
   std::optional<Peer> soleSender(int64_t nowNs) const override {
     return Receiver::kManySenders ? std::nullopt : lock_.speaker(nowNs);
   }
+  std::span<const DatagramShape> shapes() const override { return Receiver::shapes(); }
   std::optional<Outgoing> due(int64_t nowNs) override { return receiver_.due(nowNs); }
   std::optional<Outgoing> farewell(int64_t nowNs) { return receiver_.farewell(nowNs); }
   std::optional<Outgoing> frameDone(const FrameReport& report, int64_t nowNs) {

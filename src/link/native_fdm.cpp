@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "base/byte_reader.h"
 #include "base/byte_writer.h"
@@ -13,7 +15,7 @@ namespace eye {
 namespace {
 
 // Offsets of the fields that lie behind others which an image generator has no use for.
-constexpr size_t kAttitudeOffset = 36;
+constexpr size_t kLonOffset = 8, kLatOffset = 16, kAltOffset = 24, kAttitudeOffset = 36;
 constexpr size_t kClockOffsetV24 = 356, kVisibilityOffsetV24 = 364;
 constexpr size_t kClockOffsetV25 = 500, kVisibilityOffsetV25 = 508;
 static_assert(kVisibilityOffsetV24 + sizeof(float) <= kNativeFdmBytesV24);
@@ -21,6 +23,22 @@ static_assert(kVisibilityOffsetV25 + sizeof(float) <= kNativeFdmBytesV25);
 
 // Hosts may let an angle run on over many turns; a float of more than this has lost the angle (or is garbage).
 constexpr double kMaxAngleRad = 1000;
+
+// Garbage may have a header: of bytes at random behind it these let a fiftieth pass.
+constexpr std::array<WordRange, 7> wordsOf(uint32_t version) {
+  constexpr double kTurnRad = 2 * std::numbers::pi;
+  constexpr auto kMostAngleRad = static_cast<float>(kMaxAngleRad);
+  return {wordIs(0, 0xffffffff, version),
+          doubleWithin(kLonOffset, kTurnRad),
+          doubleWithin(kLatOffset, kTurnRad / 4),
+          doubleWithin(kAltOffset, kMaxAltitudeM),
+          floatWithin(kAttitudeOffset, kMostAngleRad),
+          floatWithin(kAttitudeOffset + 4, kMostAngleRad),
+          floatWithin(kAttitudeOffset + 8, kMostAngleRad)};
+}
+constexpr auto kWordsV24 = wordsOf(24), kWordsV25 = wordsOf(25);
+constexpr DatagramShape kShapes[] = {{kNativeFdmBytesV24, kNativeFdmBytesV24, kWordsV24},
+                                     {kNativeFdmBytesV25, kNativeFdmBytesV25, kWordsV25}};
 
 uint32_t versionOf(std::span<const std::byte> packet) {
   return ByteReader(packet, std::endian::big).u32();
@@ -43,6 +61,10 @@ Result<void> checkVersion(std::span<const std::byte> packet) {
 }
 
 }  // namespace
+
+std::span<const DatagramShape> nativeFdmShapes() {
+  return kShapes;
+}
 
 bool looksLikeNativeFdm(std::span<const std::byte> packet) {
   if (packet.size() == kNativeFdmBytesV24) return versionOf(packet) == 24;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "geo/pose.h"
+#include "link/datagram_shape.h"
 
 namespace eye {
 
@@ -24,6 +25,9 @@ struct NativeFdmState {
 
 // True when version and length are those of a native-fdm packet, whatever else is in it.
 bool looksLikeNativeFdm(std::span<const std::byte> packet);
+
+// What parseNativeFdm() believes has one of these.
+std::span<const DatagramShape> nativeFdmShapes();
 
 // Rejects another version or length, NaN, infinities, latitudes beyond 90 degrees, longitudes beyond 360, altitudes
 // outside -1,000 m to 1e8 m.

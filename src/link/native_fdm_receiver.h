@@ -13,6 +13,7 @@ class NativeFdmReceiver : public ListeningReceiver {
   using State = NativeFdmState;
 
   Result<Message> parse(std::span<const std::byte> datagram) const { return parseNativeFdm(datagram); }
+  static std::span<const DatagramShape> shapes() { return nativeFdmShapes(); }
   bool concerns(const Message&, int64_t) const { return true; }
   void reset() { clock_ = {}; }
   std::string greeting(const Message&) const { return "speaks native-fdm"; }

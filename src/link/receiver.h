@@ -36,6 +36,7 @@ struct ListeningReceiver {
   static constexpr bool kManySenders = false;
   static constexpr int64_t kCarryOnNs = eye::kCarryOnNs;
 
+  static std::span<const DatagramShape> shapes() { return {}; }       // see LinkProtocol
   uint64_t lost() const { return 0; }                                 // gaps in the protocol's own numbering
   std::optional<Outgoing> due(int64_t) { return std::nullopt; }       // to be sent now
   std::optional<Outgoing> farewell(int64_t) { return std::nullopt; }  // when the thread has ended

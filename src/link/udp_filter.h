@@ -3,14 +3,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 
+#include "link/datagram_shape.h"
 #include "link/udp_socket.h"
 
 namespace eye {
 
-// From now on datagrams of the one sender alone reach the socket; what is in its buffer already stays there. False
-// where the system does not filter: everything reaches it as before.
-bool admitOnly(int fd, const Peer& sender);
+// From now on datagrams of the one sender alone reach the socket, where one is given, and those alone that have one of
+// the shapes, where there are some; what is in its buffer already stays there. False where the system does not filter:
+// everything reaches it as before.
+bool admitOnly(int fd, const std::optional<Peer>& sender, std::span<const DatagramShape> shapes);
 void admitEveryone(int fd);
 
 // Datagrams that came for the socket and were dropped since it was made, modulo 2^32: those that were not admitted, and

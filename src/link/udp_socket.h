@@ -15,6 +15,8 @@ struct mmsghdr;
 
 namespace eye {
 
+struct DatagramShape;
+
 // The largest payload that a UDP datagram over IPv4 can have.
 inline constexpr size_t kMaxDatagramBytes = 65507;
 
@@ -53,8 +55,8 @@ class UdpSocket {
   std::optional<std::span<const std::byte>> receiveFrom(std::span<std::byte> buffer, Peer& sender) const;
   // Of those that have arrived as many as there are headers; how many. For DatagramBatch, which has the buffers.
   size_t receiveMany(std::span<mmsghdr> headers) const;
-  // While a flood of others comes: see link/udp_filter.h. False where the system does not filter.
-  bool admitOnly(const Peer& sender) const;
+  // While a flood comes: see link/udp_filter.h. False where the system does not filter.
+  bool admitOnly(const std::optional<Peer>& sender, std::span<const DatagramShape> shapes = {}) const;
   void admitEveryone() const;
   uint32_t dropped() const;  // datagrams that never could be received, modulo 2^32
 

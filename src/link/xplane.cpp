@@ -16,6 +16,8 @@ namespace eye {
 namespace {
 
 constexpr std::string_view kName = "RPOS";
+constexpr WordRange kNameAsWord[] = {wordIs(0, 0xffffffff, 0x52504f53)};
+constexpr DatagramShape kShapes[] = {{kRposBytes, kRposBytes, kNameAsWord}};
 constexpr size_t kHeaderBytes = 5;      // the name and a byte that is 0 in the documents and '4' in truth
 constexpr double kMaxAngleDeg = 36000;  // a hundred turns: a float of more has lost the angle
 constexpr double kMaxRate = 1e6;        // m, m/s and rad/s: against garbage
@@ -41,6 +43,10 @@ std::vector<std::byte> buildRposRequest(int rateHz) {
   putText(writer, std::to_string(std::clamp(rateHz, 0, kMaxRposRateHz)));
   writer.u8(0);
   return writer.take();
+}
+
+std::span<const DatagramShape> rposShapes() {
+  return kShapes;
 }
 
 bool looksLikeRpos(std::span<const std::byte> datagram) {

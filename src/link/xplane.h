@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "geo/frames.h"
+#include "link/datagram_shape.h"
 
 namespace eye {
 
@@ -27,6 +28,9 @@ std::vector<std::byte> buildRposRequest(int rateHz);
 
 // True for a datagram of the right length and name.
 bool looksLikeRpos(std::span<const std::byte> datagram);
+
+// What parseRpos() believes has one of these.
+std::span<const DatagramShape> rposShapes();
 
 // Rejects another length or name, NaN and infinities, and positions out of the ranges of pose_limits.h.
 Result<RposState> parseRpos(std::span<const std::byte> datagram);

@@ -16,6 +16,7 @@ class XplaneReceiver : public ListeningReceiver {
   XplaneReceiver(const Peer& xplane, int rateHz) : xplane_(xplane), rateHz_(rateHz) {}
 
   Result<Message> parse(std::span<const std::byte> datagram) const { return parseRpos(datagram); }
+  static std::span<const DatagramShape> shapes() { return rposShapes(); }
   bool concerns(const Message&, int64_t) const { return true; }
   void reset() {}
   std::string greeting(const Message&) const { return "is X-Plane"; }

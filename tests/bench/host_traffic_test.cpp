@@ -79,7 +79,7 @@ TEST_CASE("A host gone wild is shown at its newest") {
     const auto source = openStateSource(urlOf(protocol, port));
     REQUIRE(source);
     const int64_t beganNs = monotonicNs();
-    const Flood flood(port, 20'000, [&, message = std::vector<std::byte>()](uint64_t index, double timeS) mutable {
+    const Flood flood(port, 100'000, [&, message = std::vector<std::byte>()](uint64_t index, double timeS) mutable {
       message = messageOf(protocol, poses.at(static_cast<uint32_t>(timeS * kHostRateHz)), static_cast<uint32_t>(index),
                           timeS);
       return std::span<const std::byte>(message);

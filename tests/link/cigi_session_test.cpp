@@ -524,6 +524,48 @@ TEST_CASE("session: questions about the ground are resolved, repeated as asked, 
         Packet(HeightResponse{7, false, static_cast<uint8_t>((host.frame - 1) & 15), std::nullopt}));
 }
 
+TEST_CASE("session: a datagram that a network has doubled asks once; one that is sent again asks again") {
+  Host host;
+  HeightRequest once{7, HeightKind::aboveTerrain, 0, 0, Geodetic{10, 20, 1000}};
+  HeightRequest often{8, HeightKind::aboveTerrain, 2, 0, Geodetic{10, 20, 1000}};
+  const auto asked = [&](const std::vector<Packet>& packets, double laterS, uint32_t frame) {
+    host.nowNs += static_cast<int64_t>(laterS * 1e9);
+    host.frame = frame;
+    host.says(packets);
+    return host.session.takeQuestions().size();
+  };
+  CHECK(asked({once, often}, 0, 10) == 2);
+  CHECK(asked({once, often}, 0.02, 10) == 0);
+  CHECK(asked({}, 0, 11) == 0);
+  CHECK(asked({once, often}, 0.02, 10) == 0);  // overtaken as well
+  CHECK(asked({once}, 0, 11) == 1);            // the same question, of another frame
+  CHECK(asked({}, 0, 12) == 1);                // in time, as if nothing had come twice
+  CHECK(asked({once, often}, 0.07, 10) == 1);  // more than 0.1 s after the first: sent again; overtaken, so only once
+  CHECK(asked({once}, 0.2, 13) == 1);
+  CHECK(asked({once}, 0.09, 13) == 0);
+  CHECK(asked({once}, 0.02, 13) == 1);
+  // Two of one frame that ask for different things are no doubles.
+  CHECK(asked({once, once}, 0, 14) == 3);  // and the one that repeats
+  often.everyFrames = 0;
+  CHECK(asked({often, once}, 0, 14) == 2);
+  // A thousand heights in one frame's datagrams, all of them twice.
+  size_t first = 0, again = 0;
+  const auto heightsFrom = [&](uint16_t id) {
+    std::vector<Packet> heights;
+    for (uint16_t i = 0; i < 40; ++i)
+      heights.push_back(HeightRequest{static_cast<uint16_t>(id + i), HeightKind::aboveTerrain, 0, 0, Geodetic{}});
+    return heights;
+  };
+  for (uint16_t id = 0; id < 1000; id = static_cast<uint16_t>(id + 40)) first += asked(heightsFrom(id), 0, 20);
+  for (uint16_t id = 0; id < 1000; id = static_cast<uint16_t>(id + 40)) again += asked(heightsFrom(id), 0, 20);
+  CHECK(first == 1000);
+  CHECK(again == 0);
+  // Another run of the host may say the very same.
+  CHECK(asked({once}, 0, 5) == 1);
+  host.session.reset();
+  CHECK(asked({once}, 0, 5) == 1);
+}
+
 TEST_CASE("session: random messages of every kind leave it bounded and its poses believed") {
   for (const Version version : {Version{3, 3}, Version{4, 0}}) {
     test::RandomCigi random(11, version);
