@@ -9,7 +9,7 @@
 namespace eye {
 namespace {
 
-constexpr FloorEffort kQuickEffort{.frames = 8, .settle = 40};
+constexpr FloorEffort kQuickEffort{.frames = 8, .settle = 120};
 constexpr size_t kQuickViews = 3;
 constexpr uint64_t kCacheMiB = 512;  // the replays lie in the pools beside the terrain
 constexpr double kMostRatio = 1.3;   // what is aimed at
