@@ -13,7 +13,8 @@ void main() {
   CullChunk chunk = chunks[candidate.chunk];
   ClusterRecord cluster = clusters[candidate.cluster];
   CullBox box = boxOf(chunk, cluster);
-  bool inView = params.isFrozen != 0u || fateInView(params, box, clipBoxOf(params, box), cluster.cone) == EYE_FATE_VISIBLE;
+  uint fate = fateInView(params, box, clipBoxOf(params, box), cluster.cone);
+  bool inView = params.isFrozen != 0u || fate == EYE_FATE_VISIBLE;
   bool isDrawn = i < params.candidateCount && inView && visible[candidate.cluster] != 0u;
   DrawCommand command = commandOf(candidate.chunk, chunk.vertexOffset, chunk.draw, cluster, isDrawn);
   if (i >= params.candidateCount) return;

@@ -150,13 +150,13 @@ HostCull CullLists::hostCull(const ChunkPools& pools, const GpuBuffer& commands)
 }
 
 void CullLists::cullEarly(const ChunkPools& pools) {
-  packedCount_ = eye::cullEarly(hostCull(pools, early_), 0);
+  earlyIndices_ = eye::cullEarly(hostCull(pools, early_));
 }
 
 void CullLists::cullLate(const ChunkPools& pools) {
   const auto pyramid = pyramid_.as<float>();
   hostPyramid_.build(depth_.as<const float>(), params().picturePx, params().mapPx, pyramid);
-  packedCount_ = eye::cullLate(hostCull(pools, late_), pyramid, packedCount_);
+  eye::cullLate(hostCull(pools, late_), pyramid, earlyIndices_);
 }
 
 CullCounts CullLists::counts() const {

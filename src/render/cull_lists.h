@@ -58,7 +58,7 @@ class CullLists {
   DepthPyramid hostPyramid_;
   size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0, spansCapacity_ = 0,
          packedCapacity_ = 0;
-  size_t packedCount_ = 0;  // indices of the frame's draws
+  size_t earlyIndices_ = 0;  // of the frame's early draws
   uint32_t chunkCount_ = 0, candidateCount_ = 0, candidatesByVertex_ = 0;
   GpuBuffer params_, chunks_, candidates_, early_, late_, fates_, depth_, pyramid_, pixelSpans_, packed_;
   glm::ivec2 spansMapPx_{0, 0}, spansPicturePx_{0, 0};  // what pixelSpans_ is for

@@ -56,8 +56,8 @@ class DrawPacker {
 
 }  // namespace
 
-size_t cullEarly(const HostCull& cull, size_t packedCount) {
-  DrawPacker packer(cull, packedCount);
+size_t cullEarly(const HostCull& cull) {
+  DrawPacker packer(cull, 0);
   for (size_t i = 0; i < cull.candidates.size(); ++i) {
     const CullCandidate& candidate = cull.candidates[i];
     const ClusterRecord& cluster = cull.clusters[candidate.cluster];
@@ -72,8 +72,8 @@ size_t cullEarly(const HostCull& cull, size_t packedCount) {
   return packer.count();
 }
 
-size_t cullLate(const HostCull& cull, std::span<const float> pyramid, size_t packedCount) {
-  DrawPacker packer(cull, packedCount);
+void cullLate(const HostCull& cull, std::span<const float> pyramid, size_t earlyIndices) {
+  DrawPacker packer(cull, earlyIndices);
   for (size_t i = 0; i < cull.candidates.size(); ++i) {
     const CullCandidate& candidate = cull.candidates[i];
     const ClusterRecord& cluster = cull.clusters[candidate.cluster];
@@ -89,7 +89,6 @@ size_t cullLate(const HostCull& cull, std::span<const float> pyramid, size_t pac
     cull.fates[i] =
         fate | wasDrawn | (isDrawn ? uint32_t{EYE_FATE_LATE} : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
   }
-  return packer.count();
 }
 
 }  // namespace eye

@@ -2,8 +2,7 @@
 // same clusters drawn, at a twentieth of what lavapipe takes for the shaders. Most of that is what lanes of a shader
 // must do and a loop need not: go on when a visible texel is found, compute what only a neighbour asks for.
 //
-// The indices of what is drawn of a chunk are packed behind one another, so that it is one draw: a draw costs lavapipe
-// as much as 20 triangles.
+// The indices of what is drawn of a chunk are packed behind one another, so that it is one draw.
 #pragma once
 
 #include <cstddef>
@@ -28,10 +27,11 @@ struct HostCull {
   std::span<uint16_t> packed;  // what the commands draw; room for every candidate's
 };
 
-// Both pack behind the first `packedCount` indices and return how many there are then.
-// Commands for what was visible in the last frame and is in view; fates: EYE_FATE_EARLY where it is drawn.
-size_t cullEarly(const HostCull& cull, size_t packedCount);
-// Commands for what shows and was not drawn early; all fates; visibility for the next frame.
-size_t cullLate(const HostCull& cull, std::span<const float> pyramid, size_t packedCount);
+// Commands for what was visible in the last frame and is in view; fates: EYE_FATE_EARLY where it is drawn. Returns how
+// many indices are packed.
+size_t cullEarly(const HostCull& cull);
+// Commands for what shows and was not drawn early, packed behind the early ones' indices; all fates; visibility for the
+// next frame.
+void cullLate(const HostCull& cull, std::span<const float> pyramid, size_t earlyIndices);
 
 }  // namespace eye
