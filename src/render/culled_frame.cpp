@@ -58,20 +58,21 @@ void Renderer::Impl::cullLate(const FrameInput& input) {
 // hidden, are not tested.
 void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts& counts) {
   const vk::raii::CommandBuffer& commands = frame.commands();
-  const auto draw = [&](HazeBy haze, const IndirectDraws& indirect, uint32_t first, uint32_t count) {
-    scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), indirect, first, count);
-  };
   const IndirectDraws skirts{lists->commands(), pools->indexBuffer()};
-  const auto drawClusters = [&](const GpuBuffer& clusterCommands) {
+  const auto drawClusters = [&](const GpuBuffer& clusterCommands, std::span<const uint32_t> handOvers) {
     const IndirectDraws indirect{clusterCommands, cullLists->onHost() ? cullLists->packedIndices() : skirts.indices};
     const uint32_t byVertex = cullLists->candidatesByVertex();
-    draw(HazeBy::vertex, indirect, 0, byVertex);
-    draw(HazeBy::pixel, indirect, byVertex, cullLists->candidateCount() - byVertex);
+    drawInBatches(HazeBy::vertex, indirect, 0, byVertex, handOvers);
+    drawInBatches(HazeBy::pixel, indirect, byVertex, cullLists->candidateCount() - byVertex, handOvers);
   };
   cullEarly();
   timestamps->mark(commands, "cull_early");
   scene->begin(commands, targets, ScenePass::Pass::first);
-  drawClusters(cullLists->earlyBuffer());
+  std::vector<uint32_t> handOvers;
+  if (cullLists->onHost())
+    handOvers =
+        overlap->handOvers(cullLists->earlyBuffer().as<const shader::DrawCommand>().first(cullLists->candidateCount()));
+  drawClusters(cullLists->earlyBuffer(), handOvers);
   scene->end(commands);
   timestamps->mark(commands, "early");
   if (!input.freezeCulling) {
@@ -84,9 +85,9 @@ void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts
     timestamps->mark(commands, "cull_late");
   }
   scene->begin(commands, targets, ScenePass::Pass::goesOn);
-  if (!input.freezeCulling) drawClusters(cullLists->lateBuffer());
-  draw(HazeBy::vertex, skirts, counts.byVertex.firstSkirt(), counts.byVertex.skirts);
-  draw(HazeBy::pixel, skirts, counts.byPixel.firstSkirt(), counts.byPixel.skirts);
+  if (!input.freezeCulling) drawClusters(cullLists->lateBuffer(), {});
+  drawInBatches(HazeBy::vertex, skirts, counts.byVertex.firstSkirt(), counts.byVertex.skirts, {});
+  drawInBatches(HazeBy::pixel, skirts, counts.byPixel.firstSkirt(), counts.byPixel.skirts, {});
   drawAir(input);
   scene->end(commands);
   timestamps->mark(commands, "late");

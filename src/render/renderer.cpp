@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "gpu/pipeline_cache.h"
+#include "gpu/time_slices.h"
 #include "render/frame_data.h"
 #include "render/haze_width.h"
 #include "render/renderer_impl.h"
@@ -29,6 +30,10 @@ vk::SampleCountFlagBits sampleCount(const RendererOptions& options) {
 bool drawsSamples(const GpuDevice& gpu, vk::SampleCountFlagBits samples) {
   return static_cast<bool>(gpu.traits.sampleCounts & samples);
 }
+
+// A device that is a CPU has a thread for each core that rasterises and one more that bins: whichever waits for a core
+// that another keeps for some milliseconds holds up all of them. The shortest that Linux takes.
+constexpr std::chrono::microseconds kSlice{100};
 
 std::vector<uint16_t> copyOf(std::span<const uint16_t> values) {
   return {values.begin(), values.end()};
@@ -59,10 +64,12 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
       if (!window) return tl::unexpected(window.error());
       impl->window = std::move(*window);
     }
+    askForSlices(kSlice);  // before the device's threads are made
     auto gpu = createDevice({options.device, options.validate, options.window});
     if (!gpu) return tl::unexpected(gpu.error());
     impl->gpu = std::move(*gpu);
     const GpuDevice& device = *impl->gpu;
+    if (!device.traits.isCpu) askForSlices({});
     if (!drawsSamples(device, sampleCount(options)))
       return fail(ErrorKind::unsupported, fmt::format("{} draws no pictures with {} samples a pixel: give --samples 1",
                                                       device.description.name, options.samples));
@@ -235,20 +242,32 @@ void Renderer::Impl::drawAir(const FrameInput& input) {
   scene->drawClouds(frame.commands());
 }
 
+// Commands `first` to `first + count - 1`, with the device told to go ahead before those of `handOvers`, see
+// RasterOverlap.
+void Renderer::Impl::drawInBatches(HazeBy haze, const IndirectDraws& indirect, uint32_t first, uint32_t count,
+                                   std::span<const uint32_t> handOvers) {
+  const vk::raii::CommandBuffer& commands = frame.commands();
+  const auto drawUpTo = [&](uint32_t end) {
+    scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), indirect, first, end - first);
+    first = end;
+  };
+  const uint32_t end = first + count;
+  for (const uint32_t next : handOvers) {
+    if (next <= first || next >= end) continue;
+    drawUpTo(next);
+    overlap->handOver(commands);
+  }
+  drawUpTo(end);
+}
+
 void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
   const vk::raii::CommandBuffer& commands = frame.commands();
   scene->begin(commands, targets, ScenePass::Pass::whole);
-  const uint32_t batch = overlap->batch(counts.draws());
-  const auto draw = [&](HazeBy haze, const DrawRange& range) {
-    for (uint32_t done = 0; done < range.count(); done += batch) {
-      const uint32_t first = range.first + done;
-      if (first > 0) overlap->handOver(commands);
-      scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), {lists->commands(), pools->indexBuffer()}, first,
-                         std::min(batch, range.count() - done));
-    }
-  };
-  draw(HazeBy::vertex, counts.byVertex);
-  draw(HazeBy::pixel, counts.byPixel);
+  const IndirectDraws indirect{lists->commands(), pools->indexBuffer()};
+  const std::vector<uint32_t> handOvers =
+      overlap->handOvers(indirect.commands.as<const shader::DrawCommand>().first(counts.draws()));
+  drawInBatches(HazeBy::vertex, indirect, counts.byVertex.first, counts.byVertex.count(), handOvers);
+  drawInBatches(HazeBy::pixel, indirect, counts.byPixel.first, counts.byPixel.count(), handOvers);
   drawAir(input);
   scene->end(commands);
   timestamps->mark(commands, "scene");

@@ -46,6 +46,8 @@ struct Renderer::Impl {
   bool prepareCulling(const FrameInput& input, size_t byVertex);
   void record(const FrameInput& input, const DrawCounts& counts, bool culls, std::optional<uint32_t> shown);
   void drawAir(const FrameInput& input);
+  void drawInBatches(HazeBy haze, const IndirectDraws& indirect, uint32_t first, uint32_t count,
+                     std::span<const uint32_t> handOvers);
   void recordScene(const FrameInput& input, const DrawCounts& counts);
   void cullEarly();
   void submitSky();
