@@ -7,7 +7,6 @@
 #include <cstdint>
 
 namespace eye {
-
 namespace {
 
 // sched_setattr(2): glibc 2.36 has neither the call nor its struct.

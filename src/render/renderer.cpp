@@ -253,7 +253,7 @@ void Renderer::Impl::drawInBatches(HazeBy haze, const IndirectDraws& indirect, u
   };
   const uint32_t end = first + count;
   for (const uint32_t next : handOvers) {
-    if (next <= first || next >= end) continue;
+    if (next < first || next >= end) continue;  // of another range
     drawUpTo(next);
     overlap->handOver(commands);
   }
