@@ -143,6 +143,7 @@ Result<std::unique_ptr<ImageGenerator>> ImageGenerator::create(const Options& op
   rendererOptions.debugViews = !options.headless || options.debugView.any();
   rendererOptions.filter = options.sampler;
   rendererOptions.samples = options.samples;
+  rendererOptions.bands = options.bands;
   rendererOptions.textureSize = database->info().textureSize;
   Result<std::unique_ptr<Renderer>> renderer = Renderer::create(rendererOptions);
   if (!renderer) return tl::unexpected(renderer.error());

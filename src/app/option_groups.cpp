@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/option_values.h"
+#include "render/bands.h"
 
 namespace eye {
 namespace {
@@ -224,6 +225,12 @@ void addDiagnosis(CLI::App& app, Options& o) {
   const char* group = "Device and diagnosis";
   app.add_flag("--list-devices", o.listDevices, "The Vulkan devices, and which can be used")->group(group);
   app.add_option("--device", o.device, "Use the device whose name contains NAME")->type_name("NAME")->group(group);
+  app.add_option("--bands", o.bands,
+                 "Where the device is a CPU the picture is drawn in N bands side by side, 1 to 4;\n"
+                 "default: one a core")
+      ->type_name("N")
+      ->check(wholeWithin(1, kMostBands))
+      ->group(group);
   app.add_flag("--validate", o.validate, "Vulkan validation on; any message fails the run")->group(group);
   app.add_option("--log-level", o.logLevel, "debug, info (default), warn or error")
       ->check(CLI::IsMember({"debug", "info", "warn", "error"}))

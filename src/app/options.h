@@ -83,6 +83,7 @@ struct Options {
   bool listDevices = false, validate = false, overlay = false;
   DebugView debugView;
   std::string device, logLevel = "info";
+  int bands = 0;  // of the picture, drawn side by side by devices that are a CPU; 0: one a core, 4 at most
 
   std::string settingsLine() const;  // for the summary: what was in force, one line
 };

@@ -8,7 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
 #include <cstring>
+
+#include "gpu/time_slices.h"
 
 namespace eye {
 namespace {
@@ -87,6 +90,13 @@ Result<void> createInstance(const DeviceOptions& options, GpuDevice& gpu) {
   return {};
 }
 
+bool hasExtension(const vk::raii::PhysicalDevice& device, const char* name) {
+  const auto extensions = device.enumerateDeviceExtensionProperties();
+  return std::ranges::any_of(extensions, [name](const vk::ExtensionProperties& extension) {
+    return std::strcmp(extension.extensionName, name) == 0;
+  });
+}
+
 DeviceFacts factsOf(const vk::raii::Instance& instance, const vk::raii::PhysicalDevice& device, bool present) {
   DeviceFacts facts;
   facts.properties = device.getProperties();
@@ -98,6 +108,12 @@ DeviceFacts factsOf(const vk::raii::Instance& instance, const vk::raii::Physical
   }
   facts.depthFormat = device.getFormatProperties(vk::Format::eD32Sfloat).optimalTilingFeatures;
   facts.queueFamilies = device.getQueueFamilyProperties();
+  if (hasExtension(device, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME)) {
+    const auto chain =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceExternalMemoryHostPropertiesEXT>();
+    facts.hostMemoryAlignment =
+        chain.get<vk::PhysicalDeviceExternalMemoryHostPropertiesEXT>().minImportedHostPointerAlignment;
+  }
   if (!present) return facts;
   facts.presents.emplace();
   for (uint32_t i = 0; i < facts.queueFamilies.size(); ++i)
@@ -138,6 +154,24 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device, const vk::Phy
   if (description.usable) description.choices = choicesText(traits);
   return description;
 }
+
+// Mesa's software rasteriser asks for its number of threads when devices are first enumerated. What the user has set
+// stays.
+class RasterThreads {
+ public:
+  explicit RasterThreads(std::optional<int> count) : isSet_(count && std::getenv(kName) == nullptr) {
+    if (isSet_) setenv(kName, std::to_string(*count).c_str(), 1);
+  }
+  ~RasterThreads() {
+    if (isSet_) unsetenv(kName);
+  }
+  RasterThreads(const RasterThreads&) = delete;
+  RasterThreads& operator=(const RasterThreads&) = delete;
+
+ private:
+  static constexpr const char* kName = "LP_NUM_THREADS";
+  bool isSet_;
+};
 
 int rank(vk::PhysicalDeviceType type) {
   switch (type) {
@@ -186,11 +220,17 @@ void createLogicalDevice(const DeviceOptions& options, GpuDevice& gpu) {
   const vk::DeviceQueueCreateInfo queue({}, gpu.traits.queueFamily, 1, &priority);
   std::vector<const char*> extensions;
   if (options.window) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  if (gpu.traits.sharedMemoryAlignment > 0) extensions.push_back(VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
   const DeviceFeatures features = featuresToEnable(gpu.traits);
   vk::DeviceCreateInfo info;
   info.setQueueCreateInfos(queue).setPEnabledExtensionNames(extensions);
   info.setPNext(&features.get<vk::PhysicalDeviceFeatures2>());
-  gpu.device = vk::raii::Device(gpu.physical, info);
+  {
+    // Of several devices that are given work one after the other none is to wait for what the first does.
+    std::optional<PatientThreads> patient;
+    if (gpu.traits.isCpu && options.rasterThreads) patient.emplace();
+    gpu.device = vk::raii::Device(gpu.physical, info);
+  }
   gpu.queue = vk::raii::Queue(gpu.device, gpu.traits.queueFamily, 0);
   gpu.commandPool =
       vk::raii::CommandPool(gpu.device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, gpu.traits.queueFamily});
@@ -200,6 +240,7 @@ void createLogicalDevice(const DeviceOptions& options, GpuDevice& gpu) {
 
 Result<std::unique_ptr<GpuDevice>> createDevice(const DeviceOptions& options) {
   try {
+    const RasterThreads threads(options.rasterThreads);
     auto gpu = std::make_unique<GpuDevice>();
     if (auto made = createInstance(options, *gpu); !made) return tl::unexpected(made.error());
     if (auto chosen = choosePhysicalDevice(options, *gpu); !chosen) return tl::unexpected(chosen.error());

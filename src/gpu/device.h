@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
@@ -18,6 +20,9 @@ struct DeviceOptions {
   std::string name;       // part of a device's name, letter case ignored; empty: discrete before integrated before CPU
   bool validate = false;  // validation and synchronization validation; messages are logged and counted
   bool window = false;    // GLFW is initialised and the device must be able to present to its windows
+  // Of a device that is a CPU, beside the one that takes its commands; nothing: as the driver has it. Mesa reads it
+  // from the environment, which is changed meanwhile: no other thread may read that.
+  std::optional<int> rasterThreads{};
 };
 
 struct GpuDevice {
@@ -34,6 +39,9 @@ struct GpuDevice {
   DeviceDescription description;
   std::atomic<uint64_t> messages{0};  // of the validation layer
 };
+
+// Those that draw one picture together: one, or several of a CPU, all of one driver.
+using GpuDevices = std::span<const std::unique_ptr<GpuDevice>>;
 
 // notFound or unsupported with what to install, choose or set. Never throws.
 Result<std::unique_ptr<GpuDevice>> createDevice(const DeviceOptions& options);

@@ -78,6 +78,7 @@ DeviceTraits chooseTraits(const DeviceFacts& facts) {
   traits.isCpu = facts.properties.deviceType == vk::PhysicalDeviceType::eCpu;
   traits.cullsOnHost = traits.binsBeforeRastering = traits.isCpu;
   traits.blendsMipLevels = !traits.isCpu;
+  if (traits.isCpu) traits.sharedMemoryAlignment = facts.hostMemoryAlignment;
   if (facts.features.get<vk::PhysicalDeviceFeatures2>().features.samplerAnisotropy)
     traits.mostAnisotropy = std::min(kAnisotropy, limits.maxSamplerAnisotropy);
   traits.drawsAnisotropic = !traits.isCpu && traits.mostAnisotropy > 1;

@@ -19,6 +19,7 @@ struct DeviceFacts {
   vk::FormatFeatureFlags depthFormat;  // D32 in optimal tiling
   std::vector<vk::QueueFamilyProperties> queueFamilies;
   std::optional<std::vector<bool>> presents;  // by family; nothing where no window is wanted
+  uint64_t hostMemoryAlignment = 0;           // of VK_EXT_external_memory_host; 0: it is not there
 };
 
 struct DeviceTraits {
@@ -32,8 +33,10 @@ struct DeviceTraits {
   bool cullsOnHost = false;          // plain code reduces depth maps and tests clusters faster than compute shaders
   bool binsBeforeRastering = false;  // draws of a pass wait for each other unless a time stamp parts them
   bool blendsMipLevels = true;       // by default: dear on a CPU
-  float mostAnisotropy = 1;          // samples along a texel's footprint that --sampler anisotropic takes; 1: it cannot
-  bool drawsAnisotropic = false;     // by default
+  // Memory of the process, so aligned, may be that of several such devices: see render/bands.h. 0: it may not.
+  uint64_t sharedMemoryAlignment = 0;
+  float mostAnisotropy = 1;       // samples along a texel's footprint that --sampler anisotropic takes; 1: it cannot
+  bool drawsAnisotropic = false;  // by default
 
   vk::SampleCountFlags sampleCounts;  // a pixel, of colour and of a depth that is read again
   uint32_t mostTextureLayers = 0, mostDraws = 0, mostWorkGroups = 0;

@@ -1,9 +1,17 @@
 #include "gpu/memory.h"
 
+#include <sys/mman.h>
+
 #include <cstring>
 
 namespace eye {
 namespace {
+
+constexpr auto kHostAllocation = vk::ExternalMemoryHandleTypeFlagBits::eHostAllocationEXT;
+
+vk::DeviceSize roundUp(vk::DeviceSize value, vk::DeviceSize multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
 
 // The first memory type that has all of the wanted properties, trying the lists in order.
 uint32_t findMemoryType(const GpuDevice& gpu, uint32_t allowedBits,
@@ -31,37 +39,90 @@ uint32_t findMemoryType(const GpuDevice& gpu, uint32_t allowedBits, MemoryUse us
   throw vk::OutOfDeviceMemoryError("unknown use");
 }
 
-}  // namespace
+// Memory of the process for what the first device needs; the others find it made.
+void provide(const GpuDevice& gpu, vk::DeviceSize bytes, HostMemory& host) {
+  if (host) return;
+  const vk::DeviceSize size = roundUp(bytes, gpu.traits.sharedMemoryAlignment);
+  void* place = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (place == MAP_FAILED) throw vk::OutOfHostMemoryError("no memory for devices to share");
+  host = HostMemory(static_cast<std::byte*>(place), [size](std::byte* mapped) { munmap(mapped, size); });
+}
 
-GpuBuffer createBuffer(const GpuDevice& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage, MemoryUse use) {
+// `host`: null: the device's own memory; else the process's, made where it points to nothing yet.
+vk::raii::DeviceMemory memoryFor(const GpuDevice& gpu, const vk::MemoryRequirements& needs, MemoryUse use,
+                                 HostMemory* host) {
+  if (host == nullptr)
+    return {gpu.device, vk::MemoryAllocateInfo(needs.size, findMemoryType(gpu, needs.memoryTypeBits, use))};
+  provide(gpu, needs.size, *host);
+  const auto type = gpu.device.getMemoryHostPointerPropertiesEXT(kHostAllocation, host->get()).memoryTypeBits;
+  const vk::ImportMemoryHostPointerInfoEXT import(kHostAllocation, host->get());
+  return {gpu.device,
+          vk::MemoryAllocateInfo(roundUp(needs.size, gpu.traits.sharedMemoryAlignment),
+                                 findMemoryType(gpu, needs.memoryTypeBits & type, MemoryUse::device), &import)};
+}
+
+GpuBuffer makeBuffer(const GpuDevice& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage, MemoryUse use,
+                     HostMemory* host) {
   GpuBuffer made;
   made.size = size;
-  made.buffer = vk::raii::Buffer(gpu.device, vk::BufferCreateInfo({}, size, usage));
-  const vk::MemoryRequirements needs = made.buffer.getMemoryRequirements();
-  made.memory = vk::raii::DeviceMemory(
-      gpu.device, vk::MemoryAllocateInfo(needs.size, findMemoryType(gpu, needs.memoryTypeBits, use)));
+  const vk::ExternalMemoryBufferCreateInfo external(kHostAllocation);
+  const vk::BufferCreateInfo info({}, size, usage, vk::SharingMode::eExclusive, {},
+                                  host != nullptr ? &external : nullptr);
+  made.buffer = vk::raii::Buffer(gpu.device, info);
+  made.memory = memoryFor(gpu, made.buffer.getMemoryRequirements(), use, host);
   made.buffer.bindMemory(*made.memory, 0);
-  if (use != MemoryUse::device) made.mapped = static_cast<std::byte*>(made.memory.mapMemory(0, VK_WHOLE_SIZE));
+  if (host != nullptr) made.host = *host;
+  if (use == MemoryUse::device) return made;
+  made.mapped = host != nullptr ? host->get() : static_cast<std::byte*>(made.memory.mapMemory(0, VK_WHOLE_SIZE));
   return made;
 }
 
-GpuImage createImage(const GpuDevice& gpu, const ImageSpec& spec) {
+GpuImage makeImage(const GpuDevice& gpu, const ImageSpec& spec, HostMemory* host) {
   GpuImage made;
   made.spec = spec;
+  const vk::ExternalMemoryImageCreateInfo external(kHostAllocation);
   vk::ImageCreateInfo info;
   info.setImageType(vk::ImageType::e2D).setFormat(spec.format).setUsage(spec.usage);
   info.setExtent({static_cast<uint32_t>(spec.widthPx), static_cast<uint32_t>(spec.heightPx), 1});
   info.setMipLevels(spec.mipLevels).setArrayLayers(spec.layers).setSamples(spec.samples);
+  if (host != nullptr) info.setPNext(&external);
   made.image = vk::raii::Image(gpu.device, info);
   const vk::MemoryRequirements needs = made.image.getMemoryRequirements();
   made.bytes = needs.size;
-  made.memory = vk::raii::DeviceMemory(
-      gpu.device, vk::MemoryAllocateInfo(needs.size, findMemoryType(gpu, needs.memoryTypeBits, MemoryUse::device)));
+  made.memory = memoryFor(gpu, needs, MemoryUse::device, host);
+  if (host != nullptr) made.host = *host;
   made.image.bindMemory(*made.memory, 0);
   const vk::ImageSubresourceRange all(spec.aspect, 0, spec.mipLevels, 0, spec.layers);
   const auto type = spec.array ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D;
   made.view = vk::raii::ImageView(gpu.device, vk::ImageViewCreateInfo({}, *made.image, type, spec.format, {}, all));
   return made;
+}
+
+// make(device, memory to share or null) for each.
+template <class Make>
+auto onEach(GpuDevices gpus, Make&& make) {
+  HostMemory host;
+  std::vector<decltype(make(*gpus.front(), nullptr))> made;
+  for (const auto& gpu : gpus) made.push_back(make(*gpu, gpus.size() > 1 ? &host : nullptr));
+  return made;
+}
+
+}  // namespace
+
+GpuBuffer createBuffer(const GpuDevice& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage, MemoryUse use) {
+  return makeBuffer(gpu, size, usage, use, nullptr);
+}
+
+std::vector<GpuBuffer> createBuffers(GpuDevices gpus, vk::DeviceSize size, vk::BufferUsageFlags usage, MemoryUse use) {
+  return onEach(gpus, [&](const GpuDevice& gpu, HostMemory* host) { return makeBuffer(gpu, size, usage, use, host); });
+}
+
+GpuImage createImage(const GpuDevice& gpu, const ImageSpec& spec) {
+  return makeImage(gpu, spec, nullptr);
+}
+
+std::vector<GpuImage> createImages(GpuDevices gpus, const ImageSpec& spec) {
+  return onEach(gpus, [&](const GpuDevice& gpu, HostMemory* host) { return makeImage(gpu, spec, host); });
 }
 
 void readBytes(const GpuDevice& gpu, const GpuBuffer& buffer, std::span<std::byte> to) {

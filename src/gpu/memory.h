@@ -1,9 +1,14 @@
 // Buffers and images, each with an allocation of its own: the renderer has a dozen large ones, made at start, so a
 // general allocator would have nothing to do. Throw vk::SystemError where the device has no memory left.
+//
+// Several devices may share one: each has a handle of its own for the same memory of this process, and what one has
+// written the others read once its fence has been waited for.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "gpu/device.h"
 
@@ -15,7 +20,11 @@ enum class MemoryUse {
   readBack,  // the GPU writes, the CPU reads: cached where there is such memory
 };
 
+// Of the process, imported by devices; null: the memory is one device's own.
+using HostMemory = std::shared_ptr<std::byte>;
+
 struct GpuBuffer {
+  HostMemory host;
   vk::raii::DeviceMemory memory{nullptr};
   vk::raii::Buffer buffer{nullptr};  // behind its memory: destroyed first
   vk::DeviceSize size = 0;
@@ -27,6 +36,8 @@ struct GpuBuffer {
 };
 
 GpuBuffer createBuffer(const GpuDevice& gpu, vk::DeviceSize size, vk::BufferUsageFlags usage, MemoryUse use);
+// One that all devices see, in their order; with one device as createBuffer.
+std::vector<GpuBuffer> createBuffers(GpuDevices gpus, vk::DeviceSize size, vk::BufferUsageFlags usage, MemoryUse use);
 
 // Copies the first elements to the CPU and waits: for tests and debugging. `buffer` is a transfer source or mapped.
 void readBytes(const GpuDevice& gpu, const GpuBuffer& buffer, std::span<std::byte> to);
@@ -48,6 +59,7 @@ struct ImageSpec {
 };
 
 struct GpuImage {
+  HostMemory host;
   vk::raii::DeviceMemory memory{nullptr};
   vk::raii::Image image{nullptr};
   vk::raii::ImageView view{nullptr};  // of everything
@@ -56,5 +68,6 @@ struct GpuImage {
 };
 
 GpuImage createImage(const GpuDevice& gpu, const ImageSpec& spec);
+std::vector<GpuImage> createImages(GpuDevices gpus, const ImageSpec& spec);
 
 }  // namespace eye

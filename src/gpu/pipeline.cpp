@@ -74,7 +74,7 @@ vk::raii::Pipeline createComputePipeline(const GpuDevice& gpu, const vk::raii::P
   const vk::SpecializationInfo specialization(1, &entry, sizeof(value), &value);
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                 constant ? &specialization : nullptr);
-  return {gpu.device, cache, vk::ComputePipelineCreateInfo({}, stage, layout)};
+  return {gpu.device, cache, vk::ComputePipelineCreateInfo(vk::PipelineCreateFlagBits::eDispatchBase, stage, layout)};
 }
 
 }  // namespace eye

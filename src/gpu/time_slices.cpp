@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <utility>
 
 namespace eye {
 namespace {
@@ -19,14 +20,31 @@ struct SchedulingAttributes {
 };
 constexpr long kThisThread = 0, kNoFlags = 0;
 
+// Of the calling thread. A time-critical one keeps what it was given.
+bool change(auto&& to) {
+  SchedulingAttributes now;
+  if (syscall(SYS_sched_getattr, kThisThread, &now, sizeof now, kNoFlags) != 0) return false;
+  if (now.policy != SCHED_OTHER && now.policy != SCHED_BATCH) return false;
+  return to(now) && syscall(SYS_sched_setattr, kThisThread, &now, kNoFlags) == 0;
+}
+
+bool changePolicy(uint32_t from, uint32_t to) {
+  return change([&](SchedulingAttributes& now) { return std::exchange(now.policy, to) == from; });
+}
+
 }  // namespace
 
 void askForSlices(std::chrono::microseconds slice) {
-  SchedulingAttributes now;
-  if (syscall(SYS_sched_getattr, kThisThread, &now, sizeof now, kNoFlags) != 0) return;
-  if (now.policy != SCHED_OTHER && now.policy != SCHED_BATCH) return;  // a time-critical thread keeps what it was given
-  now.runtimeNs = static_cast<uint64_t>(std::chrono::nanoseconds(slice).count());
-  syscall(SYS_sched_setattr, kThisThread, &now, kNoFlags);
+  change([&](SchedulingAttributes& now) {
+    now.runtimeNs = static_cast<uint64_t>(std::chrono::nanoseconds(slice).count());
+    return true;
+  });
+}
+
+PatientThreads::PatientThreads() : isSet_(changePolicy(SCHED_OTHER, SCHED_BATCH)) {}
+
+PatientThreads::~PatientThreads() {
+  if (isSet_) changePolicy(SCHED_BATCH, SCHED_OTHER);
 }
 
 }  // namespace eye

@@ -10,4 +10,17 @@ namespace eye {
 // changes.
 void askForSlices(std::chrono::microseconds slice);
 
+// Threads that the calling one starts in this one's lifetime do not take its core when it gives them work
+// (SCHED_BATCH): it goes on to give others theirs. They have their share of the cores all the same.
+class PatientThreads {
+ public:
+  PatientThreads();
+  ~PatientThreads();
+  PatientThreads(const PatientThreads&) = delete;
+  PatientThreads& operator=(const PatientThreads&) = delete;
+
+ private:
+  bool isSet_ = false;
+};
+
 }  // namespace eye

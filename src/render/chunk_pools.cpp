@@ -28,7 +28,7 @@ uint64_t roundUp(uint64_t value, uint64_t multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }
 
-GpuImage createTextures(const GpuDevice& gpu, int textureSize, uint32_t layers) {
+std::vector<GpuImage> createTextures(GpuDevices gpus, int textureSize, uint32_t layers) {
   ImageSpec spec;
   spec.widthPx = spec.heightPx = textureSize;
   // Not sRGB: decoding would cost 11 to 15 % of sampling on a CPU device, and light is mixed as displayed.
@@ -37,7 +37,7 @@ GpuImage createTextures(const GpuDevice& gpu, int textureSize, uint32_t layers) 
   spec.mipLevels = static_cast<uint32_t>(mipLevels(textureSize));
   spec.layers = layers;
   spec.array = true;
-  return createImage(gpu, spec);
+  return createImages(gpus, spec);
 }
 
 shader::ClusterRecord recordOf(const ChunkCluster& cluster, uint32_t chunkFirstIndex) {
@@ -74,21 +74,22 @@ std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uin
   return plan;
 }
 
-Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize,
+Result<std::unique_ptr<ChunkPools>> ChunkPools::create(GpuDevices gpus, uint64_t budgetBytes, int textureSize,
                                                        bool cullsOnHost) {
-  const uint32_t maxLayers = gpu.traits.mostTextureLayers;
+  const uint32_t maxLayers = gpus.front()->traits.mostTextureLayers;
   uint64_t layerBytes = mipChainBytes(textureSize);
   // What a layer takes on the device is known when the image is made: the second round keeps to it.
   for (int round = 0; round < 2; ++round) {
     const auto plan = planPools(budgetBytes, layerBytes, maxLayers);
     if (!plan) break;
-    GpuImage textures = createTextures(gpu, textureSize, plan->layers);
+    std::vector<GpuImage> textures = createTextures(gpus, textureSize, plan->layers);
+    const uint64_t textureBytes = textures.front().bytes;
     const uint64_t meshBytes =
         plan->vertices * sizeof(ChunkVertex) + plan->indices * sizeof(uint16_t) + plan->clusters * kClusterBytes;
-    if (textures.bytes + meshBytes <= budgetBytes) {
-      return std::unique_ptr<ChunkPools>(new ChunkPools(gpu, *plan, std::move(textures), textureSize, cullsOnHost));
+    if (textureBytes + meshBytes <= budgetBytes) {
+      return std::unique_ptr<ChunkPools>(new ChunkPools(gpus, *plan, std::move(textures), textureSize, cullsOnHost));
     }
-    layerBytes = textures.bytes / plan->layers + 1;
+    layerBytes = textureBytes / plan->layers + 1;
   }
   const double leastMib = double(kLeastLayers * layerBytes) / kTextureShare / (1 << 20);
   return fail(
@@ -97,8 +98,9 @@ Result<std::unique_ptr<ChunkPools>> ChunkPools::create(const GpuDevice& gpu, uin
                   budgetBytes >> 20, textureSize, leastMib + 1));
 }
 
-ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize, bool cullsOnHost)
-    : gpu_(gpu),
+ChunkPools::ChunkPools(GpuDevices gpus, const PoolPlan& plan, std::vector<GpuImage> textures, int textureSize,
+                       bool cullsOnHost)
+    : gpu_(*gpus.front()),
       textureSize_(textureSize),
       chainBytes_(mipChainBytes(textureSize)),
       vertices_(plan.vertices),
@@ -107,21 +109,23 @@ ChunkPools::ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage text
       layers_(plan.layers),
       textures_(std::move(textures)) {
   using Use = vk::BufferUsageFlagBits;
-  vertexBuffer_ =
-      createBuffer(gpu, plan.vertices * sizeof(ChunkVertex), Use::eVertexBuffer | Use::eTransferDst, MemoryUse::device);
+  vertexBuffers_ = createBuffers(gpus, plan.vertices * sizeof(ChunkVertex), Use::eVertexBuffer | Use::eTransferDst,
+                                 MemoryUse::device);
   const MemoryUse cullUse = cullsOnHost ? MemoryUse::readBack : MemoryUse::device;
-  indexBuffer_ = createBuffer(gpu, plan.indices * sizeof(uint16_t), Use::eIndexBuffer | Use::eTransferDst, cullUse);
-  clusterBuffer_ = createBuffer(gpu, plan.clusters * sizeof(shader::ClusterRecord),
+  indexBuffers_ = createBuffers(gpus, plan.indices * sizeof(uint16_t), Use::eIndexBuffer | Use::eTransferDst, cullUse);
+  clusterBuffer_ = createBuffer(gpu_, plan.clusters * sizeof(shader::ClusterRecord),
                                 Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc, cullUse);
   visibleBuffer_ =
-      createBuffer(gpu, plan.clusters * sizeof(uint32_t), Use::eStorageBuffer | Use::eTransferDst, cullUse);
+      createBuffer(gpu_, plan.clusters * sizeof(uint32_t), Use::eStorageBuffer | Use::eTransferDst, cullUse);
   const uint64_t stagingBytes = std::max(kStagingBytes, 2 * chainBytes_ + (uint64_t{4} << 20));
-  staging_ = createBuffer(gpu, stagingBytes, Use::eTransferSrc, MemoryUse::upload);
-  runOnce(gpu, [this](const vk::raii::CommandBuffer& commands) {
-    const Usage before = usageDiscarded(vk::PipelineStageFlagBits2::eNone);
-    const std::array barriers{imageBarrier(textures_, before, usageSampled())};
-    recordBarriers(commands, barriers);
-  });
+  staging_ = createBuffer(gpu_, stagingBytes, Use::eTransferSrc, MemoryUse::upload);
+  for (size_t i = 0; i < gpus.size(); ++i) {
+    runOnce(*gpus[i], [&](const vk::raii::CommandBuffer& commands) {
+      const Usage before = usageDiscarded(vk::PipelineStageFlagBits2::eNone);
+      const std::array barriers{imageBarrier(textures_[i], before, usageSampled())};
+      recordBarriers(commands, barriers);
+    });
+  }
 }
 
 // A place for all of the chunk or nothing.
@@ -190,7 +194,7 @@ std::optional<GpuChunk> ChunkPools::upload(const LoadedChunk& chunk) {
 
   const auto layer = static_cast<uint32_t>(made->textureLayer);
   uint64_t offset = stage(chunk.texels.data(), chunk.texels.size());
-  for (uint32_t mip = 0; mip < textures_.spec.mipLevels; ++mip) {
+  for (uint32_t mip = 0; mip < textures_.front().spec.mipLevels; ++mip) {
     const uint32_t side = std::max(1u, static_cast<uint32_t>(textureSize_) >> mip);
     textureCopies_.push_back({offset, 0, 0, {vk::ImageAspectFlagBits::eColor, mip, layer, 1}, {}, {side, side, 1}});
     offset += uint64_t{4} * side * side;
@@ -205,7 +209,7 @@ void ChunkPools::release(const GpuChunk& chunk) {
 }
 
 uint64_t ChunkPools::bytesResident() const {
-  const uint64_t layerBytes = textures_.bytes / layers_.capacity();
+  const uint64_t layerBytes = textures_.front().bytes / layers_.capacity();
   return vertices_.used() * sizeof(ChunkVertex) + indices_.used() * sizeof(uint16_t) +
          clusters_.used() * kClusterBytes + layers_.used() * layerBytes;
 }
@@ -238,14 +242,15 @@ uint64_t ChunkPools::stage(const void* data, size_t bytes) {
 }
 
 void ChunkPools::flush() {
+  if (vertexCopies_.empty()) return;
   runOnce(gpu_, [this](const vk::raii::CommandBuffer& commands) { recordUploads(commands); });
   staged();
 }
 
 void ChunkPools::recordUploads(const vk::raii::CommandBuffer& commands) {
   if (vertexCopies_.empty()) return;
-  commands.copyBuffer(*staging_.buffer, *vertexBuffer_.buffer, vertexCopies_);
-  commands.copyBuffer(*staging_.buffer, *indexBuffer_.buffer, indexCopies_);
+  commands.copyBuffer(*staging_.buffer, *vertexBuffers_.front().buffer, vertexCopies_);
+  commands.copyBuffer(*staging_.buffer, *indexBuffers_.front().buffer, indexCopies_);
   if (!clusterCopies_.empty()) commands.copyBuffer(*staging_.buffer, *clusterBuffer_.buffer, clusterCopies_);
   for (const vk::BufferCopy& copy : clusterCopies_) {
     constexpr vk::DeviceSize kRecord = sizeof(shader::ClusterRecord);
@@ -257,6 +262,7 @@ void ChunkPools::recordUploads(const vk::raii::CommandBuffer& commands) {
                       vk::AccessFlagBits2::eVertexAttributeRead | vk::AccessFlagBits2::eIndexRead |
                           vk::AccessFlagBits2::eShaderStorageRead | vk::AccessFlagBits2::eShaderStorageWrite);
   if (!textureCopies_.empty()) {
+    const GpuImage& textures = textures_.front();
     std::vector<vk::ImageMemoryBarrier2> before, after;
     for (const vk::BufferImageCopy& copy : textureCopies_) {
       if (copy.imageSubresource.mipLevel != 0) continue;
@@ -264,14 +270,13 @@ void ChunkPools::recordUploads(const vk::raii::CommandBuffer& commands) {
                                             copy.imageSubresource.baseArrayLayer, 1);
       // The texture that lay there is not wanted any more.
       before.push_back(
-          imageBarrier(textures_, usageDiscarded(vk::PipelineStageFlagBits2::eFragmentShader), usageCopyTarget()));
+          imageBarrier(textures, usageDiscarded(vk::PipelineStageFlagBits2::eFragmentShader), usageCopyTarget()));
       before.back().setSubresourceRange(layer);
-      after.push_back(imageBarrier(textures_, usageCopyTarget(), usageSampled()));
+      after.push_back(imageBarrier(textures, usageCopyTarget(), usageSampled()));
       after.back().setSubresourceRange(layer);
     }
     recordBarriers(commands, before);
-    commands.copyBufferToImage(*staging_.buffer, *textures_.image, vk::ImageLayout::eTransferDstOptimal,
-                               textureCopies_);
+    commands.copyBufferToImage(*staging_.buffer, *textures.image, vk::ImageLayout::eTransferDstOptimal, textureCopies_);
     recordBarriers(commands, after);
   }
   vertexCopies_.clear();

@@ -24,8 +24,8 @@ std::optional<PoolPlan> planPools(uint64_t budgetBytes, uint64_t layerBytes, uin
 class ChunkPools {
  public:
   // `cullsOnHost`: indices, clusters and their visibility are mapped, the latter two written at once. usage: the budget
-  // is too small (says how much it needs). Throws vk::SystemError.
-  static Result<std::unique_ptr<ChunkPools>> create(const GpuDevice& gpu, uint64_t budgetBytes, int textureSize,
+  // is too small (says how much it needs). Throws vk::SystemError. The first device does the uploads.
+  static Result<std::unique_ptr<ChunkPools>> create(GpuDevices gpus, uint64_t budgetBytes, int textureSize,
                                                     bool cullsOnHost);
 
   // As GpuStore says.
@@ -38,22 +38,24 @@ class ChunkPools {
 
   // Call once a frame, outside a render pass; afterwards the staging memory is in use until staged() is called.
   void recordUploads(const vk::raii::CommandBuffer& commands);
+  // The same at once, where other devices are to see it.
+  void flush();
   // The commands of the last recordUploads are finished.
   void staged();
 
-  vk::Buffer vertexBuffer() const { return *vertexBuffer_.buffer; }
-  const GpuBuffer& indexBuffer() const { return indexBuffer_; }
+  // By device.
+  const GpuBuffer& vertexBuffer(size_t device = 0) const { return vertexBuffers_[device]; }
+  const GpuBuffer& indexBuffer(size_t device = 0) const { return indexBuffers_[device]; }
+  const GpuImage& textures(size_t device = 0) const { return textures_[device]; }
   const GpuBuffer& clusterBuffer() const { return clusterBuffer_; }
   uint32_t clusterCapacity() const { return clusters_.capacity(); }
   // A word for each cluster: not 0 where the last late pass found it visible. 0 for a chunk that has just come.
   const GpuBuffer& visibleBuffer() const { return visibleBuffer_; }
-  const GpuImage& textures() const { return textures_; }
 
  private:
-  ChunkPools(const GpuDevice& gpu, const PoolPlan& plan, GpuImage textures, int textureSize, bool cullsOnHost);
+  ChunkPools(GpuDevices gpus, const PoolPlan& plan, std::vector<GpuImage> textures, int textureSize, bool cullsOnHost);
   std::optional<GpuChunk> allocate(const LoadedChunk& chunk);
   void giveBack(const GpuChunk& chunk);
-  void flush();
   bool isPending(const GpuChunk& chunk) const;
   void putClusters(std::span<const ChunkCluster> clusters, const GpuChunk& made);
   uint64_t stage(const void* data, size_t bytes);
@@ -62,8 +64,9 @@ class ChunkPools {
   int textureSize_;
   uint64_t chainBytes_;  // of one texture as it is uploaded
   RangeAllocator vertices_, indices_, clusters_, layers_;
-  GpuBuffer vertexBuffer_, indexBuffer_, clusterBuffer_, visibleBuffer_, staging_;
-  GpuImage textures_;
+  std::vector<GpuBuffer> vertexBuffers_, indexBuffers_;
+  GpuBuffer clusterBuffer_, visibleBuffer_, staging_;
+  std::vector<GpuImage> textures_;
   uint64_t stagedBytes_ = 0;
   bool onlyLayersShort_ = false;  // in the last allocation that failed
   std::vector<vk::BufferCopy> vertexCopies_, indexCopies_, clusterCopies_;

@@ -36,10 +36,10 @@ bool grow(const GpuDevice& gpu, size_t count, size_t elementBytes, vk::BufferUsa
 
 }  // namespace
 
-CullLists::CullLists(const GpuDevice& gpu, bool onHost) : onHost_(onHost) {
-  params_ = createBuffer(gpu, sizeof(shader::CullParams), Use::eStorageBuffer, MemoryUse::upload);
+CullLists::CullLists(GpuDevices gpus, bool onHost) : onHost_(onHost), perDevice_(gpus.size()) {
+  params_ = createBuffer(*gpus.front(), sizeof(shader::CullParams), Use::eStorageBuffer, MemoryUse::upload);
   params_.as<shader::CullParams>()[0] = {};
-  reserve(gpu, {}, {1, 1}, {1, 1});
+  reserve(gpus, {}, {1, 1}, {1, 1});
   writePixelSpans({1, 1}, {1, 1});  // the warm-up reads them
 }
 
@@ -53,26 +53,32 @@ bool CullLists::fits(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm
          candidates <= size_t{traits.mostWorkGroups} * EYE_CULL_GROUP;
 }
 
-bool CullLists::reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, glm::ivec2 picturePx,
-                        glm::ivec2 mapPx) {
+bool CullLists::reserve(GpuDevices gpus, std::span<const ChunkDraw> draws, glm::ivec2 picturePx, glm::ivec2 mapPx) {
+  const GpuDevice& gpu = *gpus.front();
   bool made = grow(gpu, std::max(draws.size(), kFirstChunks), sizeof(shader::CullChunk), Use::eStorageBuffer,
                    MemoryUse::upload, chunkCapacity_, chunks_);
   const size_t candidates = std::max(clustersOf(draws), kFirstCandidates);
   if (candidates > candidateCapacity_) {
     made = true;
     candidateCapacity_ = std::bit_ceil(candidates);
-    const auto make = [&](size_t elementBytes, vk::BufferUsageFlags usage, MemoryUse use) {
-      return createBuffer(gpu, candidateCapacity_ * elementBytes, Use::eStorageBuffer | usage, use);
+    const auto make = [&](const GpuDevice& on, size_t elementBytes, vk::BufferUsageFlags usage, MemoryUse use) {
+      return createBuffer(on, candidateCapacity_ * elementBytes, Use::eStorageBuffer | usage, use);
     };
-    candidates_ = make(sizeof(shader::CullCandidate), {}, MemoryUse::upload);
+    candidates_ = make(gpu, sizeof(shader::CullCandidate), {}, MemoryUse::upload);
     const MemoryUse commands = onHost_ ? MemoryUse::upload : MemoryUse::device;
-    early_ = make(sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, commands);
-    late_ = make(sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, commands);
-    fates_ = make(sizeof(uint32_t), {}, MemoryUse::readBack);
+    for (size_t i = 0; i < gpus.size(); ++i)
+      for (GpuBuffer* buffer : {&perDevice_[i].early, &perDevice_[i].late})
+        *buffer = make(*gpus[i], sizeof(shader::DrawCommand), Use::eIndirectBuffer | Use::eTransferSrc, commands);
+    fates_ = make(gpu, sizeof(uint32_t), {}, MemoryUse::readBack);
   }
   const auto pixels = static_cast<size_t>(picturePx.x) * static_cast<size_t>(picturePx.y);
-  made |= grow(gpu, pixels, sizeof(float), Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc,
-               onHost_ ? MemoryUse::readBack : MemoryUse::device, depthCapacity_, depth_);
+  if (pixels > depthCapacity_) {
+    made = true;
+    depthCapacity_ = std::bit_ceil(pixels);
+    depth_ =
+        createBuffers(gpus, depthCapacity_ * sizeof(float), Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc,
+                      onHost_ ? MemoryUse::readBack : MemoryUse::device);
+  }
   made |= grow(gpu, pyramidLayout(mapPx).texels, sizeof(float), Use::eStorageBuffer | Use::eTransferSrc,
                onHost_ ? MemoryUse::upload : MemoryUse::device, pyramidCapacity_, pyramid_);
   const auto sides = static_cast<size_t>(mapPx.x) + static_cast<size_t>(mapPx.y);
@@ -81,9 +87,13 @@ bool CullLists::reserve(const GpuDevice& gpu, std::span<const ChunkDraw> draws, 
     spansMapPx_ = {0, 0};
   }
   // No cluster is drawn twice.
-  if (onHost_)
-    grow(gpu, std::max(indicesOf(draws), kFirstIndices), sizeof(uint16_t), Use::eIndexBuffer, MemoryUse::upload,
-         packedCapacity_, packed_);
+  const size_t indices = std::max(indicesOf(draws), kFirstIndices);
+  if (onHost_ && indices > packedCapacity_) {
+    packedCapacity_ = std::bit_ceil(indices);
+    for (size_t i = 0; i < gpus.size(); ++i)
+      perDevice_[i].packed =
+          createBuffer(*gpus[i], packedCapacity_ * sizeof(uint16_t), Use::eIndexBuffer, MemoryUse::upload);
+  }
   return made;
 }
 
@@ -137,26 +147,34 @@ void CullLists::write(std::span<const ChunkDraw> draws, size_t byVertex, const V
   std::copy(layout.offset.begin(), layout.offset.end(), params.levelOffset);
 }
 
-HostCull CullLists::hostCull(const ChunkPools& pools, const GpuBuffer& commands) const {
+std::vector<BandDraws> CullLists::bandDraws(GpuBuffer PerDevice::*commands) const {
+  std::vector<BandDraws> bands;
+  for (const PerDevice& device : perDevice_)
+    bands.push_back({(device.*commands).as<shader::DrawCommand>(), device.packed.as<uint16_t>()});
+  return bands;
+}
+
+HostCull CullLists::hostCull(const ChunkPools& pools, std::span<const BandDraws> bands,
+                             const BandTest& bandTest) const {
   return {.params = params(),
           .chunks = chunks_.as<const shader::CullChunk>().first(chunkCount_),
           .candidates = candidates_.as<const shader::CullCandidate>().first(candidateCount_),
           .clusters = pools.clusterBuffer().as<const shader::ClusterRecord>(),
           .visible = pools.visibleBuffer().as<uint32_t>(),
           .indices = pools.indexBuffer().as<const uint16_t>(),
-          .commands = commands.as<shader::DrawCommand>(),
           .fates = fates_.as<uint32_t>(),
-          .packed = packed_.as<uint16_t>()};
+          .bands = bands,
+          .bandTest = bandTest};
 }
 
-void CullLists::cullEarly(const ChunkPools& pools) {
-  earlyIndices_ = eye::cullEarly(hostCull(pools, early_));
+void CullLists::cullEarly(const ChunkPools& pools, const BandTest& bandTest) {
+  earlyIndices_ = eye::cullEarly(hostCull(pools, bandDraws(&PerDevice::early), bandTest));
 }
 
-void CullLists::cullLate(const ChunkPools& pools) {
+void CullLists::cullLate(const ChunkPools& pools, const BandTest& bandTest) {
   const auto pyramid = pyramid_.as<float>();
-  hostPyramid_.build(depth_.as<const float>(), params().picturePx, params().mapPx, pyramid);
-  eye::cullLate(hostCull(pools, late_), pyramid, earlyIndices_);
+  hostPyramid_.build(depth_.front().as<const float>(), params().picturePx, params().mapPx, pyramid);
+  eye::cullLate(hostCull(pools, bandDraws(&PerDevice::late), bandTest), pyramid, earlyIndices_);
 }
 
 CullCounts CullLists::counts() const {

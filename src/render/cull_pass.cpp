@@ -37,12 +37,16 @@ void recordCommandsBarrier(const vk::raii::CommandBuffer& commands) {
 
 }  // namespace
 
-void recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets, const CullLists& lists) {
+void recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets, const GpuBuffer& to) {
   const std::array toCopy{imageBarrier(targets.depth, usageDepthTarget(), usageCopySource())};
   recordBarriers(commands, toCopy);
-  const vk::Extent3D extent(static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx), 1);
-  commands.copyImageToBuffer(*targets.depth.image, vk::ImageLayout::eTransferSrcOptimal, *lists.depthBuffer().buffer,
-                             vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eDepth, 0, 0, 1}, {}, extent));
+  const vk::Offset2D at = targets.area.offset;
+  const auto width = static_cast<uint32_t>(targets.widthPx);
+  vk::BufferImageCopy copy;
+  copy.setBufferOffset(sizeof(float) * (static_cast<uint32_t>(at.y) * width + static_cast<uint32_t>(at.x)));
+  copy.setBufferRowLength(width).setImageSubresource({vk::ImageAspectFlagBits::eDepth, 0, 0, 1});
+  copy.setImageOffset({at.x, at.y, 0}).setImageExtent({targets.area.extent.width, targets.area.extent.height, 1});
+  commands.copyImageToBuffer(*targets.depth.image, vk::ImageLayout::eTransferSrcOptimal, *to.buffer, copy);
   const std::array toTarget{imageBarrier(targets.depth, usageCopySource(), usageDepthTarget())};
   recordBarriers(commands, toTarget);
   recordMemoryBarrier(commands, Stage::eTransfer, Access::eTransferWrite, Stage::eComputeShader | Stage::eHost,

@@ -8,8 +8,8 @@
 
 namespace eye {
 
-// Copies the depth target, which is left as a target, for the pyramid.
-void recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets, const CullLists& lists);
+// Copies the depth target's area, the target being left as one, for the pyramid. `to`: of the whole picture.
+void recordDepthCopy(const vk::raii::CommandBuffer& commands, const Targets& targets, const GpuBuffer& to);
 
 class CullPass {
  public:

@@ -11,86 +11,70 @@ double millisecondsSince(int64_t beganNs) {
 
 }  // namespace
 
-void Renderer::Impl::cullEarly() {
+IndirectDraws Renderer::Impl::clustersOf(size_t band, const GpuBuffer& commands) const {
+  IndirectDraws clusters = drawsOf(band);
+  clusters.commands = *commands.buffer;
+  if (cullLists->onHost()) clusters.indices = *cullLists->packedIndices(band).buffer;
+  return clusters;
+}
+
+void Renderer::Impl::cullEarly(const BandTest& bandTest) {
   if (!cullLists->onHost()) {
-    cull->recordEarly(frame.commands(), *cullLists);
+    cull->recordEarly(first().frame.commands(), *cullLists);
     return;
   }
   const TraceScope scope("cull early");
   const int64_t beganNs = monotonicNs();
-  cullLists->cullEarly(*pools);
+  cullLists->cullEarly(*pools, bandTest);
   hostEarlyMs = millisecondsSince(beganNs);
 }
 
-// Where nothing is yet: what the late pass adds is drawn over it.
-void Renderer::Impl::submitSky() {
-  const vk::raii::CommandBuffer& commands = sky.commands();
-  sky.begin();
-  scene->begin(commands, targets, ScenePass::Pass::between);
-  scene->drawSky(commands);
-  scene->end(commands);
-  timestamps->mark(commands, "sky");
-  sky.submit(*gpu);
-  skyIsDrawn = true;
-}
-
 // By the CPU: when the commands so far have been executed, on a device that is a CPU at no more than a barrier's cost.
-// Other threads of the device draw the sky meanwhile.
-void Renderer::Impl::cullLate(const FrameInput& input) {
+// Other threads of the devices draw the sky meanwhile.
+void Renderer::Impl::cullLate(const FrameInput& input, const BandTest& bandTest, size_t used) {
   if (!cullLists->onHost()) {
-    cull->recordDepthPyramid(frame.commands(), *cullLists);
-    timestamps->mark(frame.commands(), "depth_map");
-    cull->recordLate(frame.commands(), *cullLists);
+    const vk::raii::CommandBuffer& commands = first().frame.commands();
+    cull->recordDepthPyramid(commands, *cullLists);
+    first().timestamps.mark(commands, "depth_map");
+    cull->recordLate(commands, *cullLists);
     return;
   }
-  timestamps->mark(frame.commands(), "depth_map");
-  frame.submit(*gpu);
-  if (!input.background) submitSky();
-  frame.wait(*gpu);
-  const TraceScope scope("cull late");
-  const int64_t beganNs = monotonicNs();
-  cullLists->cullLate(*pools);
-  hostLateMs = millisecondsSince(beganNs);
-  frame.begin();
+  for (size_t i = 0; i < used; ++i) {
+    Band& band = *bands[i];
+    band.timestamps.mark(band.frame.commands(), "depth_map");
+    band.frame.submit(band.gpu);
+    if (!input.background) band.submitSky();
+  }
+  for (size_t i = 0; i < used; ++i) bands[i]->frame.wait(bands[i]->gpu);
+  {
+    const TraceScope scope("cull late");
+    const int64_t beganNs = monotonicNs();
+    cullLists->cullLate(*pools, bandTest);
+    hostLateMs = millisecondsSince(beganNs);
+  }
+  for (size_t i = 0; i < used; ++i) bands[i]->frame.begin();
 }
 
-// Two passes: what was visible in the last frame, then what else its depth does not hide. The skirts, few and mostly
-// hidden, are not tested.
-void Renderer::Impl::recordCulledScene(const FrameInput& input, const DrawCounts& counts) {
-  const vk::raii::CommandBuffer& commands = frame.commands();
-  const IndirectDraws skirts{lists->commands(), pools->indexBuffer()};
-  const auto drawClusters = [&](const GpuBuffer& clusterCommands, std::span<const uint32_t> handOvers) {
-    const IndirectDraws indirect{clusterCommands, cullLists->onHost() ? cullLists->packedIndices() : skirts.indices};
-    const uint32_t byVertex = cullLists->candidatesByVertex();
-    drawInBatches(HazeBy::vertex, indirect, 0, byVertex, handOvers);
-    drawInBatches(HazeBy::pixel, indirect, byVertex, cullLists->candidateCount() - byVertex, handOvers);
-  };
-  cullEarly();
-  timestamps->mark(commands, "cull_early");
-  scene->begin(commands, targets, ScenePass::Pass::first);
+// Two passes: what was visible in the last frame, then what else its depth does not hide.
+void Renderer::Impl::drawCulledScene(const FrameInput& input, const DrawCounts& counts, const BandTest& bandTest,
+                                     size_t used) {
+  const uint32_t byVertex = cullLists->candidatesByVertex(), count = cullLists->candidateCount();
+  cullEarly(bandTest);
   std::vector<uint32_t> handOvers;
-  if (cullLists->onHost())
-    handOvers =
-        overlap->handOvers(cullLists->earlyBuffer().as<const shader::DrawCommand>().first(cullLists->candidateCount()));
-  drawClusters(cullLists->earlyBuffer(), handOvers);
-  scene->end(commands);
-  timestamps->mark(commands, "early");
-  if (!input.freezeCulling) {
-    if (farthest) {
-      farthest->record(commands, targets);
-    } else {
-      recordDepthCopy(commands, targets, *cullLists);
-    }
-    cullLate(input);
-    timestamps->mark(commands, "cull_late");
+  if (first().overlap && cullLists->onHost())
+    handOvers = first().overlap->handOvers(cullLists->earlyBuffer().as<const shader::DrawCommand>().first(count));
+  for (size_t i = 0; i < used; ++i) {
+    Band& band = *bands[i];
+    band.timestamps.mark(band.frame.commands(), "cull_early");
+    band.drawEarly(clustersOf(i, cullLists->earlyBuffer(i)), byVertex, count, handOvers);
+    if (!input.freezeCulling) band.copyDepth(cullLists->depthBuffer(i));
   }
-  scene->begin(commands, targets, ScenePass::Pass::goesOn);
-  if (!input.freezeCulling) drawClusters(cullLists->lateBuffer(), {});
-  drawInBatches(HazeBy::vertex, skirts, counts.byVertex.firstSkirt(), counts.byVertex.skirts, {});
-  drawInBatches(HazeBy::pixel, skirts, counts.byPixel.firstSkirt(), counts.byPixel.skirts, {});
-  drawAir(input);
-  scene->end(commands);
-  timestamps->mark(commands, "late");
+  if (!input.freezeCulling) cullLate(input, bandTest, used);
+  for (size_t i = 0; i < used; ++i) {
+    Band& band = *bands[i];
+    if (!input.freezeCulling) band.timestamps.mark(band.frame.commands(), "cull_late");
+    band.drawLate(input, clustersOf(i, cullLists->lateBuffer(i)), byVertex, count, drawsOf(i), counts);
+  }
 }
 
 }  // namespace eye

@@ -20,7 +20,11 @@ void DebugViews::record(const vk::raii::CommandBuffer& commands, const GpuDevice
                         Timestamps& timestamps) const {
   if (input.tint != Tint::none) {
     scene.begin(commands, targets, ScenePass::Pass::over);
-    scene.drawTinted(commands, gpu, pools, tints_.draws(), tints_.commands(), tints_.count());
+    const IndirectDraws tinted{.commands = *tints_.commands().buffer,
+                               .indices = *pools.indexBuffer().buffer,
+                               .vertices = *pools.vertexBuffer().buffer,
+                               .records = *tints_.draws().buffer};
+    scene.drawTinted(commands, gpu, tinted, tints_.count());
     if (!input.background) scene.drawSky(commands);
     scene.end(commands);
     timestamps.mark(commands, "tint");

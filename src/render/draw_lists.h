@@ -3,6 +3,7 @@
 #pragma once
 
 #include "gpu/memory.h"
+#include "render/bands.h"
 #include "render/renderer.h"
 #include "shared/types.h"
 
@@ -25,21 +26,24 @@ struct DrawCounts {
 
 class DrawLists {
  public:
-  explicit DrawLists(const GpuDevice& gpu);
+  explicit DrawLists(GpuDevices gpus);
   // Makes room for so many chunks. Nothing may be in flight.
-  void reserve(const GpuDevice& gpu, size_t chunks);
+  void reserve(GpuDevices gpus, size_t chunks);
   // As partByHaze parts them: the first `byVertex` have haze by vertex.
-  DrawCounts write(std::span<const ChunkDraw> draws, size_t byVertex, const Vec3d& eyeEcefM, int textureSize);
+  DrawCounts write(std::span<const ChunkDraw> draws, size_t byVertex, const Vec3d& eyeEcefM, int textureSize,
+                   const BandTest& bandTest);
 
-  const GpuBuffer& draws() const { return draws_; }
-  const GpuBuffer& commands() const { return commands_; }
+  // By device, that is by band: a band's commands draw nothing for what does not show there.
+  const GpuBuffer& draws(size_t device = 0) const { return draws_[device]; }
+  const GpuBuffer& commands(size_t device = 0) const { return commands_[device]; }
 
  private:
   DrawRange writeRange(std::span<const ChunkDraw> draws, uint32_t firstChunk, uint32_t firstCommand,
-                       const Vec3d& eyeEcefM, int textureSize, DrawCounts& counts);
+                       const Vec3d& eyeEcefM, int textureSize, const BandTest& bandTest, DrawCounts& counts);
+  void put(uint32_t number, vk::DrawIndexedIndirectCommand command, uint32_t bands);
 
   size_t capacity_ = 0;
-  GpuBuffer draws_, commands_;
+  std::vector<GpuBuffer> draws_, commands_;
 };
 
 }  // namespace eye

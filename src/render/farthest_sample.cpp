@@ -14,8 +14,8 @@ using Type = vk::DescriptorType;
 
 constexpr Usage kRead{Stage::eComputeShader, Access::eShaderSampledRead, vk::ImageLayout::eShaderReadOnlyOptimal};
 
-uint32_t groups(int count) {
-  return static_cast<uint32_t>((count + EYE_DEPTH_GROUP - 1) / EYE_DEPTH_GROUP);
+uint32_t groups(uint32_t count) {
+  return (count + EYE_DEPTH_GROUP - 1) / EYE_DEPTH_GROUP;
 }
 
 }  // namespace
@@ -34,9 +34,9 @@ FarthestSample::FarthestSample(const GpuDevice& gpu, const vk::raii::PipelineCac
   pipeline_ = createComputePipeline(gpu, cache, k_depth_farthest_comp, *layout_);
 }
 
-void FarthestSample::bind(const GpuDevice& gpu, const Targets& targets, const CullLists& lists) {
+void FarthestSample::bind(const GpuDevice& gpu, const Targets& targets, const GpuBuffer& to) {
   const vk::DescriptorImageInfo image(*sampler_, *targets.depthSamples.view, kRead.layout);
-  const vk::DescriptorBufferInfo buffer(*lists.depthBuffer().buffer, 0, VK_WHOLE_SIZE);
+  const vk::DescriptorBufferInfo buffer(*to.buffer, 0, VK_WHOLE_SIZE);
   const std::array writes{vk::WriteDescriptorSet(*set_, 0, 0, Type::eCombinedImageSampler, image),
                           vk::WriteDescriptorSet(*set_, 1, 0, 1, Type::eStorageBuffer, nullptr, &buffer)};
   gpu.device.updateDescriptorSets(writes, nullptr);
@@ -47,7 +47,10 @@ void FarthestSample::record(const vk::raii::CommandBuffer& commands, const Targe
   recordBarriers(commands, toRead);
   commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, nullptr);
-  commands.dispatch(groups(targets.widthPx), groups(targets.heightPx), 1);
+  const vk::Offset2D at = targets.area.offset;
+  const vk::Extent2D extent = targets.area.extent;
+  commands.dispatchBase(static_cast<uint32_t>(at.x) / EYE_DEPTH_GROUP, static_cast<uint32_t>(at.y) / EYE_DEPTH_GROUP, 0,
+                        groups(extent.width), groups(extent.height), 1);
   const std::array toTarget{imageBarrier(targets.depthSamples, kRead, usageDepthTarget())};
   recordBarriers(commands, toTarget);
   recordMemoryBarrier(commands, Stage::eComputeShader, Access::eShaderStorageWrite,

@@ -12,8 +12,9 @@ class FarthestSample {
   // Throws vk::SystemError. `cache` gets what the driver compiles.
   FarthestSample(const GpuDevice& gpu, const vk::raii::PipelineCache& cache);
   // Nothing that uses the set may be in flight.
-  void bind(const GpuDevice& gpu, const Targets& targets, const CullLists& lists);
-  // As recordDepthCopy, from targets.depthSamples, which are left as a target.
+  void bind(const GpuDevice& gpu, const Targets& targets, const GpuBuffer& to);
+  // As recordDepthCopy, from targets.depthSamples, which are left as a target. The area begins with a group of
+  // EYE_DEPTH_GROUP pixels.
   void record(const vk::raii::CommandBuffer& commands, const Targets& targets) const;
 
  private:

@@ -23,26 +23,27 @@ bool isOccluded(const CullParams& params, std::span<const float> pyramid, const 
   return true;
 }
 
-// The commands, chunk by chunk.
+// The commands of a band, chunk by chunk.
 class DrawPacker {
  public:
-  DrawPacker(const HostCull& cull, size_t packedCount) : cull_(cull), count_(packedCount) {}
+  DrawPacker(const HostCull& cull, const BandDraws& draws, size_t packedCount)
+      : cull_(cull), draws_(draws), count_(packedCount) {}
 
   // For each candidate in turn, drawn or not.
   void put(size_t i, bool isDrawn) {
-    cull_.commands[i] = {};
+    draws_.commands[i] = {};
     if (!isDrawn) return;
     const CullCandidate& candidate = cull_.candidates[i];
     const ClusterRecord& cluster = cull_.clusters[candidate.cluster];
     if (first_ == kNone || cull_.candidates[first_].chunk != candidate.chunk) {
       const CullChunk& chunk = cull_.chunks[candidate.chunk];
-      cull_.commands[i] = {0, 1, static_cast<uint32_t>(count_), chunk.vertexOffset, chunk.draw};
+      draws_.commands[i] = {0, 1, static_cast<uint32_t>(count_), chunk.vertexOffset, chunk.draw};
       first_ = i;
     }
     std::ranges::copy(cull_.indices.subspan(cluster.firstIndex, cluster.indexCount),
-                      cull_.packed.subspan(count_).begin());
+                      draws_.packed.subspan(count_).begin());
     count_ += cluster.indexCount;
-    cull_.commands[first_].indexCount += cluster.indexCount;
+    draws_.commands[first_].indexCount += cluster.indexCount;
   }
   size_t count() const { return count_; }
 
@@ -50,30 +51,42 @@ class DrawPacker {
   static constexpr size_t kNone = ~size_t{0};
 
   const HostCull& cull_;
+  const BandDraws& draws_;
   size_t count_;          // indices packed
   size_t first_ = kNone;  // that is drawn of the chunk at hand
 };
 
+// A candidate that is drawn, for the bands in which it may show.
+void putInBands(std::span<DrawPacker> packers, size_t i, bool isDrawn, const BandTest& test, const CullBox& box) {
+  const uint32_t bands = isDrawn ? test.bandsOf(box) : 0;
+  for (size_t band = 0; band < packers.size(); ++band) packers[band].put(i, (bands >> band & 1) != 0);
+}
+
 }  // namespace
 
-size_t cullEarly(const HostCull& cull) {
-  DrawPacker packer(cull, 0);
+std::vector<size_t> cullEarly(const HostCull& cull) {
+  std::vector<DrawPacker> packers;
+  for (const BandDraws& draws : cull.bands) packers.emplace_back(cull, draws, 0);
   for (size_t i = 0; i < cull.candidates.size(); ++i) {
     const CullCandidate& candidate = cull.candidates[i];
     const ClusterRecord& cluster = cull.clusters[candidate.cluster];
     bool isDrawn = cull.visible[candidate.cluster] != 0;
-    if (isDrawn && cull.params.isFrozen == 0) {
-      const CullBox box = boxOf(cull.chunks[candidate.chunk], cluster);
+    CullBox box{};
+    if (isDrawn) box = boxOf(cull.chunks[candidate.chunk], cluster);
+    if (isDrawn && cull.params.isFrozen == 0)
       isDrawn = fateInView(cull.params, box, clipBoxOf(cull.params, box), cluster.cone) == EYE_FATE_VISIBLE;
-    }
-    packer.put(i, isDrawn);
+    putInBands(packers, i, isDrawn, cull.bandTest, box);
     cull.fates[i] = (isDrawn ? EYE_FATE_EARLY : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);
   }
-  return packer.count();
+  std::vector<size_t> packed;
+  for (const DrawPacker& packer : packers) packed.push_back(packer.count());
+  return packed;
 }
 
-void cullLate(const HostCull& cull, std::span<const float> pyramid, size_t earlyIndices) {
-  DrawPacker packer(cull, earlyIndices);
+void cullLate(const HostCull& cull, std::span<const float> pyramid, std::span<const size_t> earlyIndices) {
+  std::vector<DrawPacker> packers;
+  for (size_t band = 0; band < cull.bands.size(); ++band)
+    packers.emplace_back(cull, cull.bands[band], earlyIndices[band]);
   for (size_t i = 0; i < cull.candidates.size(); ++i) {
     const CullCandidate& candidate = cull.candidates[i];
     const ClusterRecord& cluster = cull.clusters[candidate.cluster];
@@ -84,7 +97,7 @@ void cullLate(const HostCull& cull, std::span<const float> pyramid, size_t early
       fate = EYE_FATE_OCCLUDED;
     const uint32_t wasDrawn = cull.fates[i] & EYE_FATE_EARLY;
     const bool isDrawn = fate == EYE_FATE_VISIBLE && wasDrawn == 0;
-    packer.put(i, isDrawn);
+    putInBands(packers, i, isDrawn, cull.bandTest, box);
     cull.visible[candidate.cluster] = fate == EYE_FATE_VISIBLE ? 1 : 0;
     cull.fates[i] =
         fate | wasDrawn | (isDrawn ? uint32_t{EYE_FATE_LATE} : 0u) | (cluster.indexCount / 3u << EYE_FATE_BITS);

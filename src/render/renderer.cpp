@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "gpu/pipeline_cache.h"
-#include "gpu/time_slices.h"
 #include "render/frame_data.h"
 #include "render/haze_width.h"
 #include "render/renderer_impl.h"
-#include "render/warm_up.h"
 #include "telemetry/cpu_time.h"
 #include "telemetry/trace.h"
 
@@ -23,24 +20,16 @@ glm::ivec2 usableMap(glm::ivec2 mapPx, glm::ivec2 picturePx) {
   return glm::max(mapPx, (picturePx + (kMostPixelsPerTexel - 1)) / kMostPixelsPerTexel);
 }
 
-vk::SampleCountFlagBits sampleCount(const RendererOptions& options) {
-  return options.samples > 1 ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
-}
+// In the trace, by band.
+constexpr std::array<const char*, kMostBands> kTraceLanes{"GPU", "GPU 2", "GPU 3", "GPU 4"};
 
-bool drawsSamples(const GpuDevice& gpu, vk::SampleCountFlagBits samples) {
-  return static_cast<bool>(gpu.traits.sampleCounts & samples);
+glm::vec3 clipRow(const shader::FrameData& data, int row) {
+  const glm::mat4& m = data.clipFromEcef;
+  return {m[0][row], m[1][row], m[2][row]};
 }
-
-// A device that is a CPU has a thread for each core that rasterises and one more that bins: whichever waits for a core
-// that another keeps for some milliseconds holds up all of them. The shortest that Linux takes.
-constexpr std::chrono::microseconds kSlice{100};
 
 std::vector<uint16_t> copyOf(std::span<const uint16_t> values) {
   return {values.begin(), values.end()};
-}
-
-bool cullsOnHost(const RendererOptions& options, const GpuDevice& gpu) {
-  return options.cullBy == CullBy::host || (options.cullBy == CullBy::device && gpu.traits.cullsOnHost);
 }
 
 }  // namespace
@@ -48,78 +37,12 @@ bool cullsOnHost(const RendererOptions& options, const GpuDevice& gpu) {
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Renderer::~Renderer() {
-  (void)vkDeviceWaitIdle(*impl_->gpu->device);  // shutdown; vk::raii would throw where the device is lost
+  for (const auto& gpu : impl_->gpus)
+    (void)vkDeviceWaitIdle(*gpu->device);  // shutdown; vk::raii would throw where the device is lost
 }
 
 Result<std::vector<DeviceDescription>> Renderer::listDevices() {
   return eye::listDevices();
-}
-
-Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
-  try {
-    auto impl = std::make_unique<Impl>();
-    impl->options = options;
-    if (options.window) {
-      auto window = Window::open({options.widthPx, options.heightPx, options.fullscreen, options.monitor});
-      if (!window) return tl::unexpected(window.error());
-      impl->window = std::move(*window);
-    }
-    askForSlices(kSlice);  // before the device's threads are made
-    auto gpu = createDevice({options.device, options.validate, options.window});
-    if (!gpu) return tl::unexpected(gpu.error());
-    impl->gpu = std::move(*gpu);
-    const GpuDevice& device = *impl->gpu;
-    if (!device.traits.isCpu) askForSlices({});
-    if (!drawsSamples(device, sampleCount(options)))
-      return fail(ErrorKind::unsupported, fmt::format("{} draws no pictures with {} samples a pixel: give --samples 1",
-                                                      device.description.name, options.samples));
-    if (options.filter == TextureFilter::anisotropic && device.traits.mostAnisotropy <= 1)
-      return fail(ErrorKind::unsupported,
-                  fmt::format("{} has no anisotropic filter: give --sampler trilinear", device.description.name));
-    auto pools = ChunkPools::create(device, options.gpuBudgetBytes, options.textureSize, cullsOnHost(options, device));
-    if (!pools) return tl::unexpected(pools.error());
-    impl->pools = std::move(*pools);
-
-    if (options.window) impl->swapchain = std::make_unique<Swapchain>(device, *impl->window, options.vsync);
-
-    const std::string cachePath = pipelineCachePath(device);
-    impl->cache = loadPipelineCache(device, cachePath);
-    GLFWwindow* window = options.window ? impl->window->handle() : nullptr;
-    impl->scene = std::make_unique<ScenePass>(device, impl->cache,
-                                              SceneOptions{.colourFormat = impl->colourFormat(),
-                                                           .samples = sampleCount(options),
-                                                           .filter = options.filter,
-                                                           .withTints = options.debugViews,
-                                                           .bend = options.bend});
-    if (options.samples > 1) impl->farthest = std::make_unique<FarthestSample>(device, impl->cache);
-    impl->lists = std::make_unique<DrawLists>(device);
-    impl->cullLists = std::make_unique<CullLists>(device, cullsOnHost(options, device));
-    if (!impl->cullLists->onHost()) {
-      impl->cull = std::make_unique<CullPass>(device, impl->cache);
-      impl->cull->bind(device, *impl->pools, *impl->cullLists);
-      runOnce(device, [&](const vk::raii::CommandBuffer& commands) { impl->cull->recordWarmUp(commands); });
-    }
-    if (options.debugViews) {
-      impl->debug = std::make_unique<DebugViews>(device, impl->cache, impl->colourFormat());
-      impl->debug->bind(device, *impl->cullLists);
-    }
-    impl->overlay = std::make_unique<Overlay>(device, impl->cache, impl->colourFormat(), window);
-    impl->timestamps = std::make_unique<Timestamps>(device);
-    impl->overlap = std::make_unique<RasterOverlap>(device);
-    impl->scene->bindTextures(device, impl->pools->textures());
-    impl->frame = Submission(device);
-    impl->sky = Submission(device);
-
-    std::unique_ptr<Renderer> renderer(new Renderer(std::move(impl)));
-    if (auto warm = warmUp(*renderer, options); !warm) return tl::unexpected(warm.error());
-    savePipelineCache(renderer->impl_->cache, cachePath);
-    return renderer;
-  } catch (const std::exception& e) {
-    return fail(ErrorKind::unsupported,
-                fmt::format("the graphics device refuses to start ({}): try a smaller --cache-gpu or --size, "
-                            "or another --device",
-                            e.what()));
-  }
 }
 
 bool Renderer::hasRoomFor(std::span<const LoadedChunk> chunks) {
@@ -138,20 +61,22 @@ uint64_t Renderer::bytesResident() const {
   return impl_->pools->bytesResident();
 }
 const DeviceDescription& Renderer::device() const {
-  return impl_->gpu->description;
+  return impl_->gpu().description;
 }
 TextureFilter Renderer::textureFilter() const {
-  return filterOn(*impl_->gpu, impl_->options.filter);
+  return filterOn(impl_->gpu(), impl_->options.filter);
 }
 uint64_t Renderer::validationMessages() const {
-  return impl_->gpu->messages.load();
+  uint64_t messages = 0;
+  for (const auto& gpu : impl_->gpus) messages += gpu->messages.load();
+  return messages;
 }
 
 Result<bool> Renderer::awaitDisplay() {
   if (impl_->swapchain == nullptr) return false;
   const TraceScope scope("wait for the display");
   try {
-    return impl_->swapchain->acquire(*impl_->gpu);
+    return impl_->swapchain->acquire(impl_->gpu());
   } catch (const std::exception& e) {
     return fail(ErrorKind::unsupported,
                 fmt::format("the window takes no more pictures ({}): start again, perhaps with --headless", e.what()));
@@ -164,30 +89,36 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
     const double cpuBeganMs = processCpuMs();
     FrameInput input = asked;
     impl.resizeTargets(input.view.widthPx, input.view.heightPx);
-    impl.lists->reserve(*impl.gpu, input.draws.size());
-    impl.scene->frame() = frameData(input);
-    impl.scene->placeSky(input, impl.options.airByPixel);
-    impl.scene->placeClouds(input);
-    impl.scene->faceAs(input.view.frustum);
-    const size_t parted = partByHaze(asked.draws, asked.view.eyeEcefM, impl.scene->frame(), impl.draws);
+    impl.lists->reserve(impl.gpus, input.draws.size());
+    const shader::FrameData data = frameData(input);
+    const size_t used = impl.placeBands(input, data);
+    const size_t parted = partByHaze(asked.draws, asked.view.eyeEcefM, data, impl.draws);
     const size_t byVertex = impl.options.airByPixel ? 0 : parted;
     input.draws = impl.draws;
-    const DrawCounts counts = impl.lists->write(input.draws, byVertex, input.view.eyeEcefM, impl.options.textureSize);
-    if (impl.debug) impl.debug->prepare(*impl.gpu, input, *impl.pools, *impl.cullLists, impl.options.textureSize);
-    const bool culls = impl.prepareCulling(input, byVertex);
+    const BandTest bandTest(impl.edgesPx, clipRow(data, 0), clipRow(data, 3));
+    const DrawCounts counts =
+        impl.lists->write(input.draws, byVertex, input.view.eyeEcefM, impl.options.textureSize, bandTest);
+    if (impl.debug) impl.debug->prepare(impl.gpu(), input, *impl.pools, *impl.cullLists, impl.options.textureSize);
+    const bool culls = impl.prepareCulling(input, data, byVertex);
     std::optional<uint32_t> shown;
     if (impl.swapchain != nullptr) shown = impl.swapchain->held();
-    impl.record(input, counts, culls, shown);
-    impl.frame.submit(*impl.gpu);
-    impl.frame.wait(*impl.gpu);
-    if (impl.skyIsDrawn) impl.sky.wait(*impl.gpu);
+    {
+      const TraceScope scope("record");
+      for (size_t i = 0; i < used; ++i) impl.bands[i]->begin();
+      impl.upload();
+      culls ? impl.drawCulledScene(input, counts, bandTest, used) : impl.drawScene(input, counts, used);
+      if (input.readDepth && impl.targets().isSampled())
+        for (size_t i = 0; i < used; ++i) impl.bands[i]->drawDepthAtCentres(impl.drawsOf(i), counts.draws());
+    }
+    if (impl.isInBands()) impl.joinBands(used);
+    impl.finish(input, shown);
     impl.pools->staged();
     impl.drawn = true;
 
     FrameOutput output;
-    if (impl.gpu->traits.isCpu) output.cpuMs = processCpuMs() - cpuBeganMs;
-    output.widthPx = impl.targets.widthPx;
-    output.heightPx = impl.targets.heightPx;
+    if (impl.gpu().traits.isCpu) output.cpuMs = processCpuMs() - cpuBeganMs;
+    output.widthPx = impl.targets().widthPx;
+    output.heightPx = impl.targets().heightPx;
     output.triangles = counts.surfaceTriangles + counts.skirtTriangles;
     output.vertices = counts.vertices;
     output.draws = counts.draws();
@@ -198,10 +129,10 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
       output.draws = output.clusters.drawn + counts.skirts();
     }
     if (input.readColour) output.rgba = impl.pictureRgba();
-    if (input.readDepth) output.depth = impl.targets.depthBack.as<const float>();
-    impl.readTimes(output);
+    if (input.readDepth) output.depth = impl.targets().depthBack.as<const float>();
+    impl.readTimes(used, output);
     output.completedNs = monotonicNs();
-    if (shown) impl.swapchain->present(*impl.gpu);
+    if (shown) impl.swapchain->present(impl.gpu());
     return output;
   } catch (const std::exception& e) {
     return fail(ErrorKind::unsupported,
@@ -212,120 +143,150 @@ Result<FrameOutput> Renderer::drawFrame(const FrameInput& asked) {
 }
 
 void Renderer::Impl::resizeTargets(int widthPx, int heightPx) {
-  if (widthPx == targets.widthPx && heightPx == targets.heightPx) return;
-  targets = {};  // the old ones first: both at once may not fit
+  if (widthPx == targets().widthPx && heightPx == targets().heightPx) return;
+  for (const auto& band : bands) band->targets = {};  // the old ones first: both at once may not fit
   drawn = false;
-  targets = createTargets(*gpu, widthPx, heightPx, colourFormat(), sampleCount(options));
-  if (farthest) farthest->bind(*gpu, targets, *cullLists);
-  overlay->bindTargets(*gpu, targets);
+  const auto samples = first().farthest ? vk::SampleCountFlagBits::e4 : vk::SampleCountFlagBits::e1;
+  std::vector<Targets> made = createTargets(gpus, widthPx, heightPx, colourFormat(), samples);
+  for (size_t i = 0; i < bands.size(); ++i) bands[i]->targets = std::move(made[i]);
+  bindDepth();
+  overlay->bindTargets(gpu(), targets());
+  edgesPx = evenEdges(widthPx, static_cast<int>(bands.size()), seamStepPx(options.samples));
+}
+
+void Renderer::Impl::bindDepth() {
+  for (size_t i = 0; i < bands.size(); ++i)
+    if (bands[i]->farthest) bands[i]->farthest->bind(*gpus[i], bands[i]->targets, cullLists->depthBuffer(i));
+}
+
+// How many of the bands the picture has columns for.
+size_t Renderer::Impl::placeBands(const FrameInput& input, const shader::FrameData& data) {
+  size_t used = 0;
+  for (; used < bands.size() && edgesPx[used] < edgesPx[used + 1]; ++used) {
+    const auto width = static_cast<uint32_t>(edgesPx[used + 1] - edgesPx[used]);
+    const vk::Rect2D area({edgesPx[used], 0}, {width, static_cast<uint32_t>(input.view.heightPx)});
+    bands[used]->place(input, data, area, options.airByPixel);
+  }
+  return used;
 }
 
 // False: nothing to test, or more than the device's buffers hold: the frame is drawn without the pass.
-bool Renderer::Impl::prepareCulling(const FrameInput& input, size_t byVertex) {
+bool Renderer::Impl::prepareCulling(const FrameInput& input, const shader::FrameData& data, size_t byVertex) {
   if (!input.depthMapPx) return false;
   const glm::ivec2 picturePx(input.view.widthPx, input.view.heightPx);
   const glm::ivec2 mapPx = usableMap(*input.depthMapPx, picturePx);
-  if (!CullLists::fits(*gpu, input.draws, picturePx, mapPx)) return false;
-  if (cullLists->reserve(*gpu, input.draws, picturePx, mapPx)) {
-    if (cull) cull->bind(*gpu, *pools, *cullLists);
-    if (farthest) farthest->bind(*gpu, targets, *cullLists);
-    if (debug) debug->bind(*gpu, *cullLists);
+  if (!CullLists::fits(gpu(), input.draws, picturePx, mapPx)) return false;
+  if (cullLists->reserve(gpus, input.draws, picturePx, mapPx)) {
+    if (cull) cull->bind(gpu(), *pools, *cullLists);
+    bindDepth();
+    if (debug) debug->bind(gpu(), *cullLists);
   }
-  cullLists->write(input.draws, byVertex, input.view, scene->frame().clipFromEcef, mapPx, input.freezeCulling);
+  cullLists->write(input.draws, byVertex, input.view, data.clipFromEcef, mapPx, input.freezeCulling);
   return cullLists->candidateCount() > 0;
 }
 
-// Where no terrain is, and before it.
-void Renderer::Impl::drawAir(const FrameInput& input) {
-  if (input.background) return;
-  if (!skyIsDrawn) scene->drawSky(frame.commands());
-  scene->drawClouds(frame.commands());
-}
-
-// Commands `first` to `first + count - 1`, with the device told to go ahead before those of `handOvers`, see
-// RasterOverlap.
-void Renderer::Impl::drawInBatches(HazeBy haze, const IndirectDraws& indirect, uint32_t first, uint32_t count,
-                                   std::span<const uint32_t> handOvers) {
-  const vk::raii::CommandBuffer& commands = frame.commands();
-  const auto drawUpTo = [&](uint32_t end) {
-    scene->drawTerrain(haze, commands, *gpu, *pools, lists->draws(), indirect, first, end - first);
-    first = end;
-  };
-  const uint32_t end = first + count;
-  for (const uint32_t next : handOvers) {
-    if (next < first || next >= end) continue;  // of another range
-    drawUpTo(next);
-    overlap->handOver(commands);
-  }
-  drawUpTo(end);
-}
-
-void Renderer::Impl::recordScene(const FrameInput& input, const DrawCounts& counts) {
-  const vk::raii::CommandBuffer& commands = frame.commands();
-  scene->begin(commands, targets, ScenePass::Pass::whole);
-  const IndirectDraws indirect{lists->commands(), pools->indexBuffer()};
-  const std::vector<uint32_t> handOvers =
-      overlap->handOvers(indirect.commands.as<const shader::DrawCommand>().first(counts.draws()));
-  drawInBatches(HazeBy::vertex, indirect, counts.byVertex.first, counts.byVertex.count(), handOvers);
-  drawInBatches(HazeBy::pixel, indirect, counts.byPixel.first, counts.byPixel.count(), handOvers);
-  drawAir(input);
-  scene->end(commands);
-  timestamps->mark(commands, "scene");
-}
-
-void Renderer::Impl::record(const FrameInput& input, const DrawCounts& counts, bool culls,
-                            std::optional<uint32_t> shown) {
-  const TraceScope scope("record");
-  const vk::raii::CommandBuffer& commands = frame.commands();
-  skyIsDrawn = false;
-  frame.begin();
-  timestamps->begin(commands);
-  overlap->begin(commands);
-  pools->recordUploads(commands);
-  timestamps->mark(commands, "upload");
-  if (culls) {
-    recordCulledScene(input, counts);
+// With the first commands of the only device; before all of them where several are to see it.
+void Renderer::Impl::upload() {
+  if (isInBands()) {
+    const int64_t beganNs = monotonicNs();
+    pools->flush();
+    hostUploadMs = static_cast<double>(monotonicNs() - beganNs) * 1e-6;
   } else {
-    recordScene(input, counts);
+    pools->recordUploads(first().frame.commands());
   }
-  if (debug) debug->record(commands, *gpu, input, *scene, *pools, targets, *cullLists, *timestamps);
-  if (input.overlay) {
-    overlay->record(commands, targets, input.overlay);
-    timestamps->mark(commands, "overlay");
-  }
-  const std::array toCopy{imageBarrier(targets.colour, usageColourTarget(), usageCopySource())};
-  recordBarriers(commands, toCopy);
-  if (input.readColour) recordReadBack(commands, targets.colour, targets.colourBack);
-  if (input.readDepth) {
-    if (targets.isSampled()) scene->drawDepthAtCentres(commands, *gpu, targets, *pools, *lists, counts.draws());
-    const std::array depthToCopy{imageBarrier(targets.depth, usageDepthTarget(), usageCopySource())};
-    recordBarriers(commands, depthToCopy);
-    recordReadBack(commands, targets.depth, targets.depthBack);
-  }
-  if (input.readColour || input.readDepth) timestamps->mark(commands, "read_back");
-  if (shown) {
-    swapchain->recordCopy(commands, targets.colour, *shown);
-    timestamps->mark(commands, "present");
-  }
+  first().timestamps.mark(first().frame.commands(), "upload");
 }
 
-void Renderer::Impl::readTimes(FrameOutput& output) {
+IndirectDraws Renderer::Impl::drawsOf(size_t band) const {
+  return {.commands = *lists->commands(band).buffer,
+          .indices = *pools->indexBuffer(band).buffer,
+          .vertices = *pools->vertexBuffer(band).buffer,
+          .records = *lists->draws(band).buffer};
+}
+
+void Renderer::Impl::drawScene(const FrameInput& input, const DrawCounts& counts, size_t used) {
+  std::vector<uint32_t> handOvers;
+  if (first().overlap)
+    handOvers = first().overlap->handOvers(lists->commands().as<const shader::DrawCommand>().first(counts.draws()));
+  for (size_t i = 0; i < used; ++i) bands[i]->drawScene(input, drawsOf(i), counts, handOvers);
+}
+
+// Waits until each band is complete. What follows is for the first device, over the whole picture.
+void Renderer::Impl::joinBands(size_t used) {
+  for (size_t i = 0; i < used; ++i) bands[i]->frame.submit(*gpus[i]);
+  for (size_t i = 0; i < used; ++i) bands[i]->wait();
+  targets().area = wholeOf(targets());
+}
+
+// What is drawn over the scene, the copies that are asked for, and the wait for all of it.
+void Renderer::Impl::finish(const FrameInput& input, std::optional<uint32_t> shown) {
+  Band& band = first();
+  const vk::raii::CommandBuffer& commands = band.frame.commands();
+  if (isInBands()) {
+    const bool isComplete = !debug && !input.overlay && !input.readColour && !input.readDepth && swapchain == nullptr;
+    if (isComplete) return;
+    band.frame.begin();
+  }
+  if (debug) debug->record(commands, gpu(), input, band.scene, *pools, targets(), *cullLists, band.timestamps);
+  if (input.overlay) {
+    overlay->record(commands, targets(), input.overlay);
+    band.timestamps.mark(commands, "overlay");
+  }
+  const std::array toCopy{imageBarrier(targets().colour, usageColourTarget(), usageCopySource())};
+  recordBarriers(commands, toCopy);
+  if (input.readColour) recordReadBack(commands, targets().colour, targets().colourBack);
+  if (input.readDepth) {
+    const std::array depthToCopy{imageBarrier(targets().depth, usageDepthTarget(), usageCopySource())};
+    recordBarriers(commands, depthToCopy);
+    recordReadBack(commands, targets().depth, targets().depthBack);
+  }
+  if (input.readColour || input.readDepth) band.timestamps.mark(commands, "read_back");
+  if (shown) {
+    swapchain->recordCopy(commands, targets().colour, *shown);
+    band.timestamps.mark(commands, "present");
+  }
+  band.frame.submit(gpu());
+  isInBands() ? band.frame.wait(gpu()) : band.wait();
+}
+
+// Of each pass the longest of the bands' times.
+void Renderer::Impl::readTimes(size_t used, FrameOutput& output) {
   // The GPU's clock is tied to ours by the end of the frame, which the fence has just told.
   const int64_t endNs = monotonicNs();
-  const auto& spans = timestamps->read();
   passTimes.clear();
-  if (!spans.empty()) output.gpuMs = spans.back().endMs;
-  for (const Timestamps::Span& span : spans) {
-    const std::string_view name = span.name;
-    if (cullLists->onHost() && (name == "cull_early" || name == "cull_late")) {
-      passTimes.push_back({span.name, name == "cull_early" ? hostEarlyMs : hostLateMs});
-      continue;  // in the trace they are the render thread's
+  for (size_t i = 0; i < used; ++i) {
+    const auto& spans = bands[i]->readTimes();
+    const double bandMs = spans.empty() ? 0 : spans.back().endMs;
+    output.gpuMs = std::max(output.gpuMs, bandMs);
+    for (const Timestamps::Span& span : spans) {
+      const std::optional<double> byHost = hostMs(span.name);
+      const double ms = byHost.value_or(span.endMs - span.beginMs);
+      const auto known = std::ranges::find(passTimes, std::string_view(span.name), &PassTime::name);
+      if (known == passTimes.end()) {
+        passTimes.push_back({span.name, ms});
+      } else {
+        known->ms = std::max(known->ms, ms);
+      }
+      if (byHost) continue;  // in the trace they are the render thread's
+      const auto at = [&](double sinceMs) { return endNs - static_cast<int64_t>((bandMs - sinceMs) * 1e6); };
+      traceSpan(kTraceLanes[i], span.name, at(span.beginMs), at(span.endMs));
     }
-    passTimes.push_back({span.name, span.endMs - span.beginMs});
-    const auto at = [&](double ms) { return endNs - static_cast<int64_t>((output.gpuMs - ms) * 1e6); };
-    traceSpan("GPU", span.name, at(span.beginMs), at(span.endMs));
+  }
+  if (isInBands() && used == bands.size()) {
+    std::vector<double> ms;
+    for (const auto& band : bands) ms.push_back(band->busyMs());
+    edgesPx = balancedEdges(edgesPx, ms, seamStepPx(options.samples));
   }
   output.passes = passTimes;
+}
+
+// Of a pass that the CPU does here.
+std::optional<double> Renderer::Impl::hostMs(std::string_view pass) const {
+  if (isInBands() && pass == "upload") return hostUploadMs;
+  if (!cullLists->onHost()) return std::nullopt;
+  if (pass == "cull_early") return hostEarlyMs;
+  if (pass == "cull_late") return hostLateMs;
+  return std::nullopt;
 }
 
 vk::Format Renderer::Impl::colourFormat() const {
@@ -334,7 +295,7 @@ vk::Format Renderer::Impl::colourFormat() const {
 }
 
 std::span<const uint8_t> Renderer::Impl::pictureRgba() {
-  const std::span<const uint8_t> read = targets.colourBack.as<const uint8_t>();
+  const std::span<const uint8_t> read = targets().colourBack.as<const uint8_t>();
   if (colourFormat() == vk::Format::eR8G8B8A8Unorm) return read;
   rgba.resize(read.size());
   for (size_t i = 0; i < read.size(); i += 4) {
@@ -347,24 +308,27 @@ std::span<const uint8_t> Renderer::Impl::pictureRgba() {
 }
 
 CullReadBack Renderer::readCulling() const {
-  const GpuDevice& gpu = *impl_->gpu;
+  const GpuDevice& gpu = impl_->gpu();
   const CullLists& lists = *impl_->cullLists;
   const size_t candidates = lists.candidateCount();
   const shader::CullParams params = lists.params();
   const auto pixels = static_cast<size_t>(params.picturePx.x) * static_cast<size_t>(params.picturePx.y);
+  std::vector<CullReadBack::BandDraws> bands;
+  for (size_t i = 0; i < impl_->gpus.size(); ++i)
+    bands.push_back({readBuffer<shader::DrawCommand>(*impl_->gpus[i], lists.earlyBuffer(i), candidates),
+                     readBuffer<shader::DrawCommand>(*impl_->gpus[i], lists.lateBuffer(i), candidates),
+                     lists.onHost() ? copyOf(lists.packedIndices(i).as<const uint16_t>()) : std::vector<uint16_t>{}});
   return {
       .params = params,
       .chunks = readBuffer<shader::CullChunk>(gpu, lists.chunksBuffer(), lists.chunkCount()),
       .candidates = readBuffer<shader::CullCandidate>(gpu, lists.candidatesBuffer(), candidates),
       .clusters =
           readBuffer<shader::ClusterRecord>(gpu, impl_->pools->clusterBuffer(), impl_->pools->clusterCapacity()),
-      .early = readBuffer<shader::DrawCommand>(gpu, lists.earlyBuffer(), candidates),
-      .late = readBuffer<shader::DrawCommand>(gpu, lists.lateBuffer(), candidates),
+      .bands = std::move(bands),
       .fates = readBuffer<uint32_t>(gpu, lists.fatesBuffer(), candidates),
       .depth = readBuffer<float>(gpu, lists.depthBuffer(), pixels),
       .pyramid = readBuffer<float>(gpu, lists.pyramidBuffer(), pyramidLayout(params.mapPx).texels),
-      .indices = lists.onHost() ? copyOf(impl_->pools->indexBuffer().as<const uint16_t>()) : std::vector<uint16_t>{},
-      .packed = lists.onHost() ? copyOf(lists.packedIndices().as<const uint16_t>()) : std::vector<uint16_t>{}};
+      .indices = lists.onHost() ? copyOf(impl_->pools->indexBuffer().as<const uint16_t>()) : std::vector<uint16_t>{}};
 }
 
 void Renderer::presentAgain() {
@@ -373,11 +337,12 @@ void Renderer::presentAgain() {
   const std::optional<uint32_t> shown = impl.swapchain->held();
   if (!shown) return;
   try {
-    impl.frame.begin();
-    impl.swapchain->recordCopy(impl.frame.commands(), impl.targets.colour, *shown);
-    impl.frame.submit(*impl.gpu);
-    impl.frame.wait(*impl.gpu);
-    impl.swapchain->present(*impl.gpu);
+    const Submission& frame = impl.first().frame;
+    frame.begin();
+    impl.swapchain->recordCopy(frame.commands(), impl.targets().colour, *shown);
+    frame.submit(impl.gpu());
+    frame.wait(impl.gpu());
+    impl.swapchain->present(impl.gpu());
   } catch (const vk::SystemError& e) {
     spdlog::debug("the last picture cannot be shown again: {}", e.what());  // the next drawFrame reports what is wrong
   }

@@ -38,6 +38,7 @@ struct RendererOptions {
   uint64_t gpuBudgetBytes = uint64_t{256} << 20;  // pools of meshes and textures together, never exceeded
   int textureSize = 128;                          // of the terrain database
   CullBy cullBy = CullBy::device;
+  int bands = 0;            // that devices which are a CPU draw side by side, see bands.h; 0: one a core, 4 at most
   bool airByPixel = false;  // all haze and sky: what both by vertex are judged by, see haze_width.h, sky_dome.h
   TextureFilter filter = TextureFilter::device;
   int samples = 1;                  // a pixel, 1 or 4; depth is read back at the pixels' centres with either
@@ -117,17 +118,21 @@ struct FrameOutput {
 };
 
 // What the culling passes read and wrote in the last frame, copied from the GPU: for the CPU mirror that checks them.
-// By candidate: `early` and `fates`; by cluster of the pool: `clusters`.
+// By candidate: commands and `fates`; by cluster of the pool: `clusters`.
 struct CullReadBack {
+  struct BandDraws {
+    std::vector<shader::DrawCommand> early, late;
+    std::vector<uint16_t> packed;  // where the CPU culls, what the commands draw; empty where they draw the chunks'
+  };
+
   shader::CullParams params;
   std::vector<shader::CullChunk> chunks;
   std::vector<shader::CullCandidate> candidates;
   std::vector<shader::ClusterRecord> clusters;
-  std::vector<shader::DrawCommand> early, late;
+  std::vector<BandDraws> bands;  // see bands.h; one where the picture is drawn as a whole
   std::vector<uint32_t> fates;
   std::vector<float> depth, pyramid;  // of the early pass; all levels
-  // Where the CPU culls: of the resident chunks, and what the commands draw; empty where they draw the former.
-  std::vector<uint16_t> indices, packed;
+  std::vector<uint16_t> indices;      // where the CPU culls, of the resident chunks
 };
 
 class Renderer final : public GpuStore {

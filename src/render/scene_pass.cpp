@@ -192,13 +192,13 @@ void ScenePass::bindTextures(const GpuDevice& gpu, const GpuImage& textures) {
       vk::WriteDescriptorSet(*set_, EYE_BIND_TEXTURES, 0, Type::eCombinedImageSampler, info), nullptr);
 }
 
-void ScenePass::placeSky(const FrameInput& input, bool byPixel) {
+void ScenePass::placeSky(const FrameInput& input, const View& columns, bool byPixel) {
   const glm::vec4 up = frame().up_ecef;
   dome_.reset();
   under_ = input.background;
   if (!byPixel && up.w < kDomeTopM) {
     const double lowestRad = input.hidesBelowHorizon ? horizonRad(up.w, kDeepestGroundM) : domeRingRad(0);
-    dome_ = domePart(input.view, Vec3d(up), Vec3d(frame().domeAhead_ecef), lowestRad);
+    dome_ = domePart(columns, Vec3d(up), Vec3d(frame().domeAhead_ecef), lowestRad);
     if (input.hidesBelowHorizon && !under_) under_ = glm::vec3(frame().horizon) * frame().skyLight.w;
   }
   eye::placeStars(input, placedStars_);
@@ -215,7 +215,6 @@ void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& ta
   if (isSampled) barriers.push_back(imageBarrier(targets.colourSamples, colourBefore, usageColourTarget()));
   recordBarriers(commands, barriers);
   using Load = vk::AttachmentLoadOp;
-  const vk::Rect2D all({0, 0}, {static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx)});
   vk::RenderingAttachmentInfo colour, depth;
   colour.setImageView(isSampled ? *targets.colourSamples.view : *targets.colour.view);
   colour.setImageLayout(vk::ImageLayout::eColorAttachmentOptimal);
@@ -231,24 +230,24 @@ void ScenePass::begin(const vk::raii::CommandBuffer& commands, const Targets& ta
   depth.setLoadOp(goesOn ? Load::eLoad : Load::eClear);
   depth.setClearValue(vk::ClearDepthStencilValue(static_cast<float>(EYE_CLEAR_DEPTH), 0));
   vk::RenderingInfo info;
-  info.setRenderArea(all).setLayerCount(1).setColorAttachments(colour).setPDepthAttachment(&depth);
-  beginWith(commands, info);
+  info.setColorAttachments(colour).setPDepthAttachment(&depth);
+  beginWith(commands, targets, info);
 }
 
 // Viewport, scissor and descriptors are those of every pass.
-void ScenePass::beginWith(const vk::raii::CommandBuffer& commands, const vk::RenderingInfo& info) const {
-  const vk::Extent2D& extent = info.renderArea.extent;
+void ScenePass::beginWith(const vk::raii::CommandBuffer& commands, const Targets& targets,
+                          vk::RenderingInfo info) const {
+  info.setRenderArea(targets.area).setLayerCount(1);
   commands.beginRendering(info);
-  commands.setViewport(0,
-                       vk::Viewport(0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1));
-  commands.setScissor(0, info.renderArea);
+  commands.setViewport(
+      0, vk::Viewport(0, 0, static_cast<float>(targets.widthPx), static_cast<float>(targets.heightPx), 0, 1));
+  commands.setScissor(0, targets.area);
   commands.setFrontFace(flips_ ? vk::FrontFace::eClockwise : vk::FrontFace::eCounterClockwise);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, nullptr);
 }
 
 void ScenePass::drawDepthAtCentres(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
-                                   const Targets& targets, const ChunkPools& pools, const DrawLists& lists,
-                                   uint32_t count) const {
+                                   const Targets& targets, const IndirectDraws& indirect, uint32_t count) const {
   const Usage copied = usageDiscarded(vk::PipelineStageFlagBits2::eTransfer);
   const std::array barriers{imageBarrier(targets.depth, copied, usageDepthTarget())};
   recordBarriers(commands, barriers);
@@ -257,35 +256,32 @@ void ScenePass::drawDepthAtCentres(const vk::raii::CommandBuffer& commands, cons
   depth.setLoadOp(vk::AttachmentLoadOp::eClear);
   depth.setClearValue(vk::ClearDepthStencilValue(static_cast<float>(EYE_CLEAR_DEPTH), 0));
   vk::RenderingInfo info;
-  info.setRenderArea({{0, 0}, {static_cast<uint32_t>(targets.widthPx), static_cast<uint32_t>(targets.heightPx)}});
-  info.setLayerCount(1).setPDepthAttachment(&depth);
-  beginWith(commands, info);
-  drawWith(depthAtCentres_, commands, gpu, pools, lists.draws(), {lists.commands(), pools.indexBuffer()}, 0, count);
+  info.setPDepthAttachment(&depth);
+  beginWith(commands, targets, info);
+  drawWith(depthAtCentres_, commands, gpu, indirect, 0, count);
   end(commands);
 }
 
 void ScenePass::drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
-                            const ChunkPools& pools, const GpuBuffer& draws, const IndirectDraws& indirect,
-                            uint32_t first, uint32_t count) const {
+                            const IndirectDraws& indirect, uint32_t first, uint32_t count) const {
   if (count == 0) return;
-  drawWith(haze == HazeBy::vertex ? terrain_ : wide_, commands, gpu, pools, draws, indirect, first, count);
+  drawWith(haze == HazeBy::vertex ? terrain_ : wide_, commands, gpu, indirect, first, count);
 }
 
-void ScenePass::drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
-                           const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t count) const {
-  drawWith(tinted_, commands, gpu, pools, draws, {indirect, pools.indexBuffer()}, 0, count);
+void ScenePass::drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const IndirectDraws& indirect,
+                           uint32_t count) const {
+  drawWith(tinted_, commands, gpu, indirect, 0, count);
 }
 
 void ScenePass::drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::CommandBuffer& commands,
-                         const GpuDevice& gpu, const ChunkPools& pools, const GpuBuffer& draws,
-                         const IndirectDraws& indirect, uint32_t first, uint32_t count) const {
+                         const GpuDevice& gpu, const IndirectDraws& indirect, uint32_t first, uint32_t count) const {
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *pipeline);
-  commands.bindVertexBuffers(0, {pools.vertexBuffer(), *draws.buffer}, {0, 0});
-  commands.bindIndexBuffer(*indirect.indices.buffer, 0, vk::IndexType::eUint16);
+  commands.bindVertexBuffers(0, {indirect.vertices, indirect.records}, {0, 0});
+  commands.bindIndexBuffer(indirect.indices, 0, vk::IndexType::eUint16);
   constexpr uint32_t kStride = sizeof(vk::DrawIndexedIndirectCommand);
   const uint32_t most = gpu.traits.mostDraws;
   for (uint32_t done = 0; done < count; done += std::min(most, count - done)) {
-    commands.drawIndexedIndirect(*indirect.commands.buffer, vk::DeviceSize{first + done} * kStride,
+    commands.drawIndexedIndirect(indirect.commands, vk::DeviceSize{first + done} * kStride,
                                  std::min(most, count - done), kStride);
   }
 }

@@ -24,10 +24,10 @@ struct SceneOptions {
 // What `device` means there.
 TextureFilter filterOn(const GpuDevice& gpu, TextureFilter filter);
 
-// Indirect commands and the indices that they count in.
+// Indirect commands and what they count in, on one device.
 struct IndirectDraws {
-  const GpuBuffer& commands;
-  const GpuBuffer& indices;
+  vk::Buffer commands, indices, vertices;
+  vk::Buffer records;  // DrawData; a command's firstInstance is its number
 };
 
 class ScenePass {
@@ -36,8 +36,9 @@ class ScenePass {
   ScenePass(const GpuDevice& gpu, const vk::raii::PipelineCache& cache, const SceneOptions& options);
 
   void bindTextures(const GpuDevice& gpu, const GpuImage& textures);
-  // What drawSky draws: the sky by dome or by pixel, and which stars; and what is under all that is drawn.
-  void placeSky(const FrameInput& input, bool byPixel);
+  // What drawSky draws: the sky by dome, its part in `columns`, or by pixel, and which stars; and what is under all
+  // that is drawn. `columns`: the view, or as much of it as is drawn.
+  void placeSky(const FrameInput& input, const View& columns, bool byPixel);
   // In a mirrored view what is counterclockwise as seen from outside is clockwise on the screen; mirrored both ways it
   // is not.
   void faceAs(const Frustum& frustum) {
@@ -49,18 +50,19 @@ class ScenePass {
 
   // One render pass, the whole, or a first and one that goes on with what that has drawn, or draw it over: begin, draw,
   // end. `between`: goes on, and is not the last. Colour and depth are left as targets, but before the last of several
-  // passes the colour of a picture with several samples a pixel is still in its samples.
+  // passes the colour of a picture with several samples a pixel is still in its samples. Nothing outside of
+  // targets.area is touched.
   enum class Pass { whole, first, between, goesOn, over };
   void begin(const vk::raii::CommandBuffer& commands, const Targets& targets, Pass pass) const;
-  // Indirect commands `first` to `first + count - 1`; their firstInstance is the DrawData's index.
-  void drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
-                   const GpuBuffer& draws, const IndirectDraws& indirect, uint32_t first, uint32_t count) const;
+  // Indirect commands `first` to `first + count - 1`.
+  void drawTerrain(HazeBy haze, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
+                   const IndirectDraws& indirect, uint32_t first, uint32_t count) const;
   // The depth at the pixels' centres into targets.depth, of pictures with several samples a pixel: all by itself.
   void drawDepthAtCentres(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const Targets& targets,
-                          const ChunkPools& pools, const DrawLists& lists, uint32_t count) const;
+                          const IndirectDraws& indirect, uint32_t count) const;
   // As drawTerrain, both faces, in the tints that the draws' records bring, see TintLists.
-  void drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const ChunkPools& pools,
-                  const GpuBuffer& draws, const GpuBuffer& indirect, uint32_t count) const;
+  void drawTinted(const vk::raii::CommandBuffer& commands, const GpuDevice& gpu, const IndirectDraws& indirect,
+                  uint32_t count) const;
   // With the stars, if any show.
   void drawSky(const vk::raii::CommandBuffer& commands) const;
   // The layers of cloud before what is there, those behind first. Writes no depth.
@@ -68,10 +70,9 @@ class ScenePass {
   void end(const vk::raii::CommandBuffer& commands) const { commands.endRendering(); }
 
  private:
-  void beginWith(const vk::raii::CommandBuffer& commands, const vk::RenderingInfo& info) const;
+  void beginWith(const vk::raii::CommandBuffer& commands, const Targets& targets, vk::RenderingInfo info) const;
   void drawWith(const vk::raii::Pipeline& pipeline, const vk::raii::CommandBuffer& commands, const GpuDevice& gpu,
-                const ChunkPools& pools, const GpuBuffer& draws, const IndirectDraws& indirect, uint32_t first,
-                uint32_t count) const;
+                const IndirectDraws& indirect, uint32_t first, uint32_t count) const;
 
   bool flips_ = false;
   GpuBuffer frame_, starBuffer_;

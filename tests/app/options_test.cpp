@@ -34,11 +34,13 @@ TEST_CASE("the command line sets what it says") {
                                       "--rate",       "max",       "--vsync",  "off",       "--sse",
                                       "0.5",          "--culling", "none",     "--horizon", "paper",
                                       "--background", "0,0.5,1",   "--frames", "10",        "--pose",
-                                      "1,2,3,4,5,6",  "--sampler", "nearest",  "--samples", "4"});
+                                      "1,2,3,4,5,6",  "--sampler", "nearest",  "--samples", "4",
+                                      "--bands",      "3"});
   REQUIRE_FALSE(parsed.exitStatus);
   const Options& o = parsed.options;
   CHECK(o.sampler == TextureFilter::nearest);
   CHECK(o.samples == 4);
+  CHECK(o.bands == 3);
   CHECK(o.widthPx == 1280);
   CHECK(o.heightPx == 720);
   CHECK(o.fovDeg == 75);
@@ -113,6 +115,8 @@ TEST_CASE("bad usage is one line and exit status 2") {
                                                   {"--sampler", "best"},
                                                   {"--samples", "2"},
                                                   {"--samples", "8"},
+                                                  {"--bands", "0"},
+                                                  {"--bands", "5"},
                                                   {"--horizon", "flat"},
                                                   {"--frames", "0"},
                                                   {"--frames", "3.7"},

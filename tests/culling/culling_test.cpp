@@ -109,7 +109,8 @@ class Comparison {
     const CullMirror cpu = mirrorOf(gpu);
     CHECK((gpu.pyramid == cpu.pyramid));
     size_t otherFates = 0, otherDraws = 0;
-    const std::vector<uint32_t> early = clustersDrawn(gpu, gpu.early), late = clustersDrawn(gpu, gpu.late);
+    const std::vector<uint32_t> early = clustersDrawn(gpu, &CullReadBack::BandDraws::early),
+                                late = clustersDrawn(gpu, &CullReadBack::BandDraws::late);
     REQUIRE(early.size() == gpu.fates.size());
     REQUIRE(late.size() == gpu.fates.size());
     for (size_t i = 0; i < gpu.fates.size(); ++i) {

@@ -97,13 +97,14 @@ std::vector<uint32_t> drawnFromPool(const CullReadBack& gpu, const std::vector<D
 }
 
 // And where they draw packed indices: clusters of the chunk in their order, each with the indices that the pool has.
-std::vector<uint32_t> drawnPacked(const CullReadBack& gpu, const std::vector<DrawCommand>& commands) {
+std::vector<uint32_t> drawnPacked(const CullReadBack& gpu, const std::vector<DrawCommand>& commands,
+                                  const std::vector<uint16_t>& packed) {
   std::vector<uint32_t> times(gpu.candidates.size());
   for (size_t i = 0; i < commands.size(); ++i) {
     if (commands[i].instanceCount == 0) continue;
     const CullChunk& chunk = gpu.chunks[gpu.candidates[i].chunk];
     if (commands[i].firstInstance != chunk.draw || commands[i].vertexOffset != chunk.vertexOffset) return {};
-    auto next = gpu.packed.begin() + commands[i].firstIndex;
+    auto next = packed.begin() + commands[i].firstIndex;
     const auto end = next + commands[i].indexCount;
     for (size_t k = i; next != end; ++k) {
       if (k == gpu.candidates.size() || gpu.candidates[k].chunk != gpu.candidates[i].chunk) return {};
@@ -120,8 +121,16 @@ std::vector<uint32_t> drawnPacked(const CullReadBack& gpu, const std::vector<Dra
 
 }  // namespace
 
-std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu, const std::vector<DrawCommand>& commands) {
-  return gpu.packed.empty() ? drawnFromPool(gpu, commands) : drawnPacked(gpu, commands);
+std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu,
+                                    std::vector<DrawCommand> CullReadBack::BandDraws::*commands) {
+  std::vector<uint32_t> most(gpu.candidates.size());
+  for (const CullReadBack::BandDraws& band : gpu.bands) {
+    const std::vector<uint32_t> times =
+        band.packed.empty() ? drawnFromPool(gpu, band.*commands) : drawnPacked(gpu, band.*commands, band.packed);
+    if (times.empty()) return {};
+    for (size_t i = 0; i < most.size(); ++i) most[i] = std::max(most[i], times[i]);
+  }
+  return most;
 }
 
 }  // namespace eye::test

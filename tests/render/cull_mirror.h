@@ -12,8 +12,9 @@ struct CullMirror {
 };
 CullMirror mirrorOf(const CullReadBack& gpu);
 
-// How often the commands draw each candidate's cluster. Empty where a command's indices are not whole clusters of one
-// chunk behind one another, from its own candidate on.
-std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu, const std::vector<shader::DrawCommand>& commands);
+// How often the early or late commands draw each candidate's cluster, in the band that draws it most often. Empty where
+// a command's indices are not whole clusters of one chunk behind one another, from its own candidate on.
+std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu,
+                                    std::vector<shader::DrawCommand> CullReadBack::BandDraws::*commands);
 
 }  // namespace eye::test

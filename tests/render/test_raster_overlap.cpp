@@ -69,3 +69,26 @@ TEST_CASE("threads that are started later have the slices that were asked for, a
   CHECK(againNs == beforeNs);
   CHECK(sliceOfThisThreadNs() == beforeNs);
 }
+
+TEST_CASE("patient threads are of the batch policy, and the one that starts them is not for long") {
+  const auto policy = [] { return sched_getscheduler(0); };
+  int own = -1, during = -1, child = -1, after = -1, childAfter = -1;
+  std::thread([&] {
+    own = policy();
+    {
+      const PatientThreads patient;
+      during = policy();
+      std::thread([&] { child = policy(); }).join();
+    }
+    after = policy();
+    std::thread([&] { childAfter = policy(); }).join();
+  }).join();
+  if (own != SCHED_OTHER) {
+    WARN("the tests run under a scheduling policy of their own");
+    return;
+  }
+  CHECK(during == SCHED_BATCH);
+  CHECK(child == SCHED_BATCH);
+  CHECK(after == SCHED_OTHER);
+  CHECK(childAfter == SCHED_OTHER);
+}
