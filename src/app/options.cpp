@@ -97,12 +97,12 @@ std::string Options::settingsLine() const {
   return fmt::format(
       "size={}x{} {}{} near={} sse={} sampler={} samples={} culling={} depth-map={} selector={}{} horizon={} "
       "predictor={} cache-ram={} "
-      "cache-gpu={} offline={} redraw={}",
+      "cache-gpu={} bands={} offline={} redraw={}",
       widthPx, heightPx, angles, offset, nearM, ssePx, nameOf(sampler), samples, nameOf(culling), map,
       selectorMode == SelectorMode::paper ? "paper" : "adaptive", selectorRules.empty() ? "" : ":" + selectorRules,
       horizon == HorizonTest::paper ? "paper" : "ellipsoid",
       predictor == PredictorMode::none ? "none" : fmt::format("kalman-{}", predictorStates), cacheRamMiB, cacheGpuMiB,
-      offline, redrawAlways ? "always" : "changed");
+      bands == 0 ? "auto" : std::to_string(bands), offline, redrawAlways ? "always" : "changed");
 }
 
 ParsedOptions parseOptions(int argc, const char* const* argv) {

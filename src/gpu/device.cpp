@@ -17,6 +17,7 @@ namespace eye {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+constexpr const char* kRasterThreads = "LP_NUM_THREADS";
 constexpr const char* kNoDriver =
     "no Vulkan driver was found: install a driver for the graphics card, or mesa-vulkan-drivers for rendering on the "
     "CPU "
@@ -105,6 +106,8 @@ DeviceFacts factsOf(const vk::raii::Instance& instance, const vk::raii::Physical
     const DeviceFeatures has = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                                                    vk::PhysicalDeviceVulkan13Features>();
     facts.features = has;
+    const auto chain = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan12Properties>();
+    facts.driver = chain.get<vk::PhysicalDeviceVulkan12Properties>().driverID;
   }
   facts.depthFormat = device.getFormatProperties(vk::Format::eD32Sfloat).optimalTilingFeatures;
   facts.queueFamilies = device.getQueueFamilyProperties();
@@ -154,24 +157,6 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device, const vk::Phy
   if (description.usable) description.choices = choicesText(traits);
   return description;
 }
-
-// Mesa's software rasteriser asks for its number of threads when devices are first enumerated. What the user has set
-// stays.
-class RasterThreads {
- public:
-  explicit RasterThreads(std::optional<int> count) : isSet_(count && std::getenv(kName) == nullptr) {
-    if (isSet_) setenv(kName, std::to_string(*count).c_str(), 1);
-  }
-  ~RasterThreads() {
-    if (isSet_) unsetenv(kName);
-  }
-  RasterThreads(const RasterThreads&) = delete;
-  RasterThreads& operator=(const RasterThreads&) = delete;
-
- private:
-  static constexpr const char* kName = "LP_NUM_THREADS";
-  bool isSet_;
-};
 
 int rank(vk::PhysicalDeviceType type) {
   switch (type) {
@@ -228,7 +213,7 @@ void createLogicalDevice(const DeviceOptions& options, GpuDevice& gpu) {
   {
     // Of several devices that are given work one after the other none is to wait for what the first does.
     std::optional<PatientThreads> patient;
-    if (gpu.traits.isCpu && options.rasterThreads) patient.emplace();
+    if (gpu.traits.isCpu && options.oneOfSeveral) patient.emplace();
     gpu.device = vk::raii::Device(gpu.physical, info);
   }
   gpu.queue = vk::raii::Queue(gpu.device, gpu.traits.queueFamily, 0);
@@ -238,9 +223,16 @@ void createLogicalDevice(const DeviceOptions& options, GpuDevice& gpu) {
 
 }  // namespace
 
+RasterThreads::RasterThreads(int count) : isSet_(std::getenv(kRasterThreads) == nullptr) {
+  if (isSet_) setenv(kRasterThreads, std::to_string(count).c_str(), 1);
+}
+
+RasterThreads::~RasterThreads() {
+  if (isSet_) unsetenv(kRasterThreads);
+}
+
 Result<std::unique_ptr<GpuDevice>> createDevice(const DeviceOptions& options) {
   try {
-    const RasterThreads threads(options.rasterThreads);
     auto gpu = std::make_unique<GpuDevice>();
     if (auto made = createInstance(options, *gpu); !made) return tl::unexpected(made.error());
     if (auto chosen = choosePhysicalDevice(options, *gpu); !chosen) return tl::unexpected(chosen.error());

@@ -20,9 +20,21 @@ struct DeviceOptions {
   std::string name;       // part of a device's name, letter case ignored; empty: discrete before integrated before CPU
   bool validate = false;  // validation and synchronization validation; messages are logged and counted
   bool window = false;    // GLFW is initialised and the device must be able to present to its windows
-  // Of a device that is a CPU, beside the one that takes its commands; nothing: as the driver has it. Mesa reads it
-  // from the environment, which is changed meanwhile: no other thread may read that.
-  std::optional<int> rasterThreads{};
+  bool oneOfSeveral = false;  // which one thread gives their commands, one device after the other
+};
+
+// While it lives, Mesa's software rasteriser makes so many threads for each device, beside the one that takes its
+// commands. It reads that from the environment, which no other thread may read meanwhile; what the user has set there
+// stays.
+class RasterThreads {
+ public:
+  explicit RasterThreads(int count);
+  ~RasterThreads();
+  RasterThreads(const RasterThreads&) = delete;
+  RasterThreads& operator=(const RasterThreads&) = delete;
+
+ private:
+  bool isSet_;
 };
 
 struct GpuDevice {

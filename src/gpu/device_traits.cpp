@@ -78,7 +78,7 @@ DeviceTraits chooseTraits(const DeviceFacts& facts) {
   traits.isCpu = facts.properties.deviceType == vk::PhysicalDeviceType::eCpu;
   traits.cullsOnHost = traits.binsBeforeRastering = traits.isCpu;
   traits.blendsMipLevels = !traits.isCpu;
-  if (traits.isCpu) traits.sharedMemoryAlignment = facts.hostMemoryAlignment;
+  if (facts.driver == vk::DriverId::eMesaLlvmpipe) traits.sharedMemoryAlignment = facts.hostMemoryAlignment;
   if (facts.features.get<vk::PhysicalDeviceFeatures2>().features.samplerAnisotropy)
     traits.mostAnisotropy = std::min(kAnisotropy, limits.maxSamplerAnisotropy);
   traits.drawsAnisotropic = !traits.isCpu && traits.mostAnisotropy > 1;
@@ -101,8 +101,9 @@ DeviceFeatures featuresToEnable(const DeviceTraits& traits) {
 
 std::string choicesText(const DeviceTraits& traits) {
   const char* imagery = traits.drawsAnisotropic ? "anisotropic" : traits.blendsMipLevels ? "trilinear" : "bilinear";
-  return fmt::format("imagery {}, culling by {}, {} samples a pixel at most", imagery,
+  return fmt::format("imagery {}, culling by {}, {}{} samples a pixel at most", imagery,
                      traits.cullsOnHost ? "the host" : "compute shaders",
+                     traits.sharedMemoryAlignment > 0 ? "a band of the picture for each core, " : "",
                      traits.sampleCounts & vk::SampleCountFlagBits::e4 ? 4 : 1);
 }
 

@@ -20,6 +20,7 @@ struct DeviceFacts {
   std::vector<vk::QueueFamilyProperties> queueFamilies;
   std::optional<std::vector<bool>> presents;  // by family; nothing where no window is wanted
   uint64_t hostMemoryAlignment = 0;           // of VK_EXT_external_memory_host; 0: it is not there
+  std::optional<vk::DriverId> driver;
 };
 
 struct DeviceTraits {
@@ -33,7 +34,8 @@ struct DeviceTraits {
   bool cullsOnHost = false;          // plain code reduces depth maps and tests clusters faster than compute shaders
   bool binsBeforeRastering = false;  // draws of a pass wait for each other unless a time stamp parts them
   bool blendsMipLevels = true;       // by default: dear on a CPU
-  // Memory of the process, so aligned, may be that of several such devices: see render/bands.h. 0: it may not.
+  // Memory of the process, so aligned, may be that of several such devices, which lay images out alike and keep to
+  // blocks of pixels as render/bands.h has them: known of Mesa's alone. 0: it may not.
   uint64_t sharedMemoryAlignment = 0;
   float mostAnisotropy = 1;       // samples along a texel's footprint that --sampler anisotropic takes; 1: it cannot
   bool drawsAnisotropic = false;  // by default

@@ -41,11 +41,15 @@ uint32_t findMemoryType(const GpuDevice& gpu, uint32_t allowedBits, MemoryUse us
 
 // Memory of the process for what the first device needs; the others find it made.
 void provide(const GpuDevice& gpu, vk::DeviceSize bytes, HostMemory& host) {
-  if (host) return;
+  if (host.place) {
+    EYE_CHECK(bytes <= host.bytes);  // all of one driver
+    return;
+  }
   const vk::DeviceSize size = roundUp(bytes, gpu.traits.sharedMemoryAlignment);
   void* place = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (place == MAP_FAILED) throw vk::OutOfHostMemoryError("no memory for devices to share");
-  host = HostMemory(static_cast<std::byte*>(place), [size](std::byte* mapped) { munmap(mapped, size); });
+  const auto unmap = [size](std::byte* mapped) { munmap(mapped, size); };
+  host = {std::shared_ptr<std::byte>(static_cast<std::byte*>(place), unmap), size};
 }
 
 // `host`: null: the device's own memory; else the process's, made where it points to nothing yet.
@@ -54,8 +58,8 @@ vk::raii::DeviceMemory memoryFor(const GpuDevice& gpu, const vk::MemoryRequireme
   if (host == nullptr)
     return {gpu.device, vk::MemoryAllocateInfo(needs.size, findMemoryType(gpu, needs.memoryTypeBits, use))};
   provide(gpu, needs.size, *host);
-  const auto type = gpu.device.getMemoryHostPointerPropertiesEXT(kHostAllocation, host->get()).memoryTypeBits;
-  const vk::ImportMemoryHostPointerInfoEXT import(kHostAllocation, host->get());
+  const auto type = gpu.device.getMemoryHostPointerPropertiesEXT(kHostAllocation, host->place.get()).memoryTypeBits;
+  const vk::ImportMemoryHostPointerInfoEXT import(kHostAllocation, host->place.get());
   return {gpu.device,
           vk::MemoryAllocateInfo(roundUp(needs.size, gpu.traits.sharedMemoryAlignment),
                                  findMemoryType(gpu, needs.memoryTypeBits & type, MemoryUse::device), &import)};
@@ -73,7 +77,7 @@ GpuBuffer makeBuffer(const GpuDevice& gpu, vk::DeviceSize size, vk::BufferUsageF
   made.buffer.bindMemory(*made.memory, 0);
   if (host != nullptr) made.host = *host;
   if (use == MemoryUse::device) return made;
-  made.mapped = host != nullptr ? host->get() : static_cast<std::byte*>(made.memory.mapMemory(0, VK_WHOLE_SIZE));
+  made.mapped = host != nullptr ? host->place.get() : static_cast<std::byte*>(made.memory.mapMemory(0, VK_WHOLE_SIZE));
   return made;
 }
 

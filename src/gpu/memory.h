@@ -21,14 +21,32 @@ enum class MemoryUse {
 };
 
 // Of the process, imported by devices; null: the memory is one device's own.
-using HostMemory = std::shared_ptr<std::byte>;
+struct HostMemory {
+  std::shared_ptr<std::byte> place;
+  vk::DeviceSize bytes = 0;
+};
+
+// What it was is given up first, each before what it stands on; assignment by members would go the other way.
+template <class T>
+T& replace(T& to, T&& from) {
+  if (&to != &from) {
+    std::destroy_at(&to);
+    std::construct_at(&to, std::move(from));
+  }
+  return to;
+}
 
 struct GpuBuffer {
   HostMemory host;
-  vk::raii::DeviceMemory memory{nullptr};
-  vk::raii::Buffer buffer{nullptr};  // behind its memory: destroyed first
+  vk::raii::DeviceMemory memory{nullptr};  // behind what it is a part of: destroyed first, as is the next
+  vk::raii::Buffer buffer{nullptr};
   vk::DeviceSize size = 0;
   std::byte* mapped = nullptr;  // whole buffer, coherent, for upload and readBack
+
+  GpuBuffer() = default;
+  GpuBuffer(GpuBuffer&&) noexcept = default;
+  GpuBuffer& operator=(GpuBuffer&& from) noexcept { return replace(*this, std::move(from)); }
+
   template <class T>
   std::span<T> as() const {
     return {reinterpret_cast<T*>(mapped), size / sizeof(T)};
@@ -65,6 +83,10 @@ struct GpuImage {
   vk::raii::ImageView view{nullptr};  // of everything
   ImageSpec spec;
   vk::DeviceSize bytes = 0;  // of its memory
+
+  GpuImage() = default;
+  GpuImage(GpuImage&&) noexcept = default;
+  GpuImage& operator=(GpuImage&& from) noexcept { return replace(*this, std::move(from)); }
 };
 
 GpuImage createImage(const GpuDevice& gpu, const ImageSpec& spec);

@@ -32,7 +32,9 @@ const std::vector<Timestamps::Span>& Timestamps::read() {
                                                           sizeof(uint64_t), vk::QueryResultFlagBits::e64);
   if (result != vk::Result::eSuccess) return spans_;
   const auto sinceBegin = [&](size_t i) { return double((ticks[i] - ticks[0]) & mask_) * msPerTick_; };
-  for (size_t i = 0; i < names_.size(); ++i) spans_.push_back({names_[i], sinceBegin(i), sinceBegin(i + 1)});
+  beginMs_ = double(ticks[0] & mask_) * msPerTick_;
+  for (size_t i = 0; i < names_.size(); ++i)
+    if (names_[i] != nullptr) spans_.push_back({names_[i], sinceBegin(i), sinceBegin(i + 1)});
   return spans_;
 }
 

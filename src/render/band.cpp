@@ -1,5 +1,6 @@
 #include "render/band.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "gpu/pipeline_cache.h"
@@ -18,9 +19,8 @@ View columnsOf(View view, const vk::Rect2D& area) {
   return view;
 }
 
-bool isHostCulling(std::string_view pass) {
-  return pass == "cull_early" || pass == "cull_late";
-}
+// What each band does by itself, as timestamps name it.
+constexpr std::array<std::string_view, 5> kDrawing{"scene", "early", "depth_map", "sky", "late"};
 
 }  // namespace
 
@@ -139,13 +139,14 @@ void Band::drawLate(const FrameInput& input, const IndirectDraws& clusters, uint
 
 void Band::drawDepthAtCentres(const IndirectDraws& indirect, uint32_t count) {
   scene.drawDepthAtCentres(frame.commands(), gpu, targets, indirect, count);
+  timestamps.mark(frame.commands(), "depth");
 }
 
 const std::vector<Timestamps::Span>& Band::readTimes() {
   const std::vector<Timestamps::Span>& spans = timestamps.read();
   busyMs_ = 0;
   for (const Timestamps::Span& span : spans)
-    if (!isHostCulling(span.name)) busyMs_ += span.endMs - span.beginMs;
+    if (std::ranges::find(kDrawing, span.name) != kDrawing.end()) busyMs_ += span.endMs - span.beginMs;
   return spans;
 }
 

@@ -44,9 +44,9 @@ struct Band {
   // Of a picture with several samples a pixel, see ScenePass.
   void drawDepthAtCentres(const IndirectDraws& indirect, uint32_t count);
 
-  // Of the frame that has been waited for: ms that the device drew.
-  double busyMs() const { return busyMs_; }
+  // Of the frame that has been waited for; busyMs: that the device drew its own part, none of it waiting for others.
   const std::vector<Timestamps::Span>& readTimes();
+  double busyMs() const { return busyMs_; }
 
  private:
   void drawTerrain(HazeBy haze, const IndirectDraws& indirect, uint32_t first, uint32_t count,

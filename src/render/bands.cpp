@@ -27,10 +27,14 @@ int moveBy(double offPx, int stepPx) {
   return offPx > 0 ? stepPx : -stepPx;
 }
 
-// At least a step between two edges, as long as there are columns: it is the last bands that have none.
+// At least a step between two edges. Where there are not columns for that the last bands have none.
 void part(std::vector<int>& edges, int stepPx) {
-  for (size_t i = 1; i + 1 < edges.size(); ++i)
-    edges[i] = std::min(std::max(edges[i], edges[i - 1] + stepPx), edges.back());
+  const int steps = (edges.back() + stepPx - 1) / stepPx;
+  const size_t used = std::min(edges.size() - 1, static_cast<size_t>(steps));
+  for (size_t i = 1; i < used; ++i) edges[i] = std::max(edges[i], edges[i - 1] + stepPx);
+  int most = steps * stepPx;
+  for (size_t i = used - 1; i > 0; --i) edges[i] = most = std::min(edges[i], most - stepPx);
+  for (size_t i = used; i + 1 < edges.size(); ++i) edges[i] = edges.back();
 }
 
 float reachOf(const glm::vec3& plane, const shader::CullBox& box) {

@@ -226,7 +226,10 @@ void Renderer::Impl::finish(const FrameInput& input, std::optional<uint32_t> sho
     const bool isComplete = !debug && !input.overlay && !input.readColour && !input.readDepth && swapchain == nullptr;
     if (isComplete) return;
     band.frame.begin();
+    band.timestamps.skip(commands);
   }
+  // Tints are drawn over the whole picture.
+  if (isInBands() && input.tint != Tint::none) band.scene.placeSky(input, input.view, options.airByPixel);
   if (debug) debug->record(commands, gpu(), input, band.scene, *pools, targets(), *cullLists, band.timestamps);
   if (input.overlay) {
     overlay->record(commands, targets(), input.overlay);
@@ -249,27 +252,26 @@ void Renderer::Impl::finish(const FrameInput& input, std::optional<uint32_t> sho
   isInBands() ? band.frame.wait(gpu()) : band.wait();
 }
 
-// Of each pass the longest of the bands' times.
+// Of each pass the longest of the bands' times. Devices that share a picture have a clock in common.
 void Renderer::Impl::readTimes(size_t used, FrameOutput& output) {
-  // The GPU's clock is tied to ours by the end of the frame, which the fence has just told.
+  // It is tied to ours by the end of the frame, which the last fence has just told.
   const int64_t endNs = monotonicNs();
   passTimes.clear();
+  double beginMs = std::numeric_limits<double>::infinity(), endMs = 0;
   for (size_t i = 0; i < used; ++i) {
     const auto& spans = bands[i]->readTimes();
-    const double bandMs = spans.empty() ? 0 : spans.back().endMs;
-    output.gpuMs = std::max(output.gpuMs, bandMs);
-    for (const Timestamps::Span& span : spans) {
+    if (spans.empty()) continue;
+    beginMs = std::min(beginMs, bands[i]->timestamps.beginMs());
+    endMs = std::max(endMs, bands[i]->timestamps.beginMs() + spans.back().endMs);
+  }
+  output.gpuMs = std::max(endMs - beginMs, 0.0);
+  for (size_t i = 0; i < used; ++i) {
+    const double sinceMs = bands[i]->timestamps.beginMs();
+    const auto at = [&](double ms) { return endNs - static_cast<int64_t>((endMs - (sinceMs + ms)) * 1e6); };
+    for (const Timestamps::Span& span : bands[i]->timestamps.spans()) {
       const std::optional<double> byHost = hostMs(span.name);
-      const double ms = byHost.value_or(span.endMs - span.beginMs);
-      const auto known = std::ranges::find(passTimes, std::string_view(span.name), &PassTime::name);
-      if (known == passTimes.end()) {
-        passTimes.push_back({span.name, ms});
-      } else {
-        known->ms = std::max(known->ms, ms);
-      }
-      if (byHost) continue;  // in the trace they are the render thread's
-      const auto at = [&](double sinceMs) { return endNs - static_cast<int64_t>((bandMs - sinceMs) * 1e6); };
-      traceSpan(kTraceLanes[i], span.name, at(span.beginMs), at(span.endMs));
+      addPassTime(span.name, byHost.value_or(span.endMs - span.beginMs));
+      if (!byHost) traceSpan(kTraceLanes[i], span.name, at(span.beginMs), at(span.endMs));  // else the render thread's
     }
   }
   if (isInBands() && used == bands.size()) {
@@ -278,6 +280,15 @@ void Renderer::Impl::readTimes(size_t used, FrameOutput& output) {
     edgesPx = balancedEdges(edgesPx, ms, seamStepPx(options.samples));
   }
   output.passes = passTimes;
+}
+
+void Renderer::Impl::addPassTime(const char* name, double ms) {
+  const auto known = std::ranges::find(passTimes, std::string_view(name), &PassTime::name);
+  if (known == passTimes.end()) {
+    passTimes.push_back({name, ms});
+  } else {
+    known->ms = std::max(known->ms, ms);
+  }
 }
 
 // Of a pass that the CPU does here.
@@ -325,6 +336,7 @@ CullReadBack Renderer::readCulling() const {
       .clusters =
           readBuffer<shader::ClusterRecord>(gpu, impl_->pools->clusterBuffer(), impl_->pools->clusterCapacity()),
       .bands = std::move(bands),
+      .edgesPx = impl_->edgesPx,
       .fates = readBuffer<uint32_t>(gpu, lists.fatesBuffer(), candidates),
       .depth = readBuffer<float>(gpu, lists.depthBuffer(), pixels),
       .pyramid = readBuffer<float>(gpu, lists.pyramidBuffer(), pyramidLayout(params.mapPx).texels),

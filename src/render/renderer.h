@@ -130,6 +130,7 @@ struct CullReadBack {
   std::vector<shader::CullCandidate> candidates;
   std::vector<shader::ClusterRecord> clusters;
   std::vector<BandDraws> bands;  // see bands.h; one where the picture is drawn as a whole
+  std::vector<int> edgesPx;      // of the next frame's bands
   std::vector<uint32_t> fates;
   std::vector<float> depth, pyramid;  // of the early pass; all levels
   std::vector<uint16_t> indices;      // where the CPU culls, of the resident chunks

@@ -31,7 +31,7 @@ struct Renderer::Impl {
   std::vector<uint8_t> rgba;  // the picture read back, where the window's pixels are in another order
   // Of the frame: what the CPU does of it, where that is its part.
   double hostUploadMs = 0, hostEarlyMs = 0, hostLateMs = 0;
-  bool drawn = false;  // the colour target holds a whole picture, in usageCopySource
+  bool drawn = false;  // the colour target holds a whole picture, with a window in usageCopySource
 
   GpuDevice& gpu() const { return *gpus.front(); }
   Band& first() const { return *bands.front(); }
@@ -54,6 +54,7 @@ struct Renderer::Impl {
   void finish(const FrameInput& input, std::optional<uint32_t> shown);
   std::span<const uint8_t> pictureRgba();
   void readTimes(size_t used, FrameOutput& output);
+  void addPassTime(const char* name, double ms);
   std::optional<double> hostMs(std::string_view pass) const;
 };
 

@@ -11,8 +11,8 @@
 namespace eye {
 namespace {
 
-// A device that is a CPU has a thread for each core that rasterises and one more that bins: whichever waits for a core
-// that another keeps for some milliseconds holds up all of them. The shortest that Linux takes.
+// A device that is a CPU has more threads than cores, and whichever waits for a core that another keeps for some
+// milliseconds holds up all of them. The shortest that Linux takes.
 constexpr std::chrono::microseconds kSlice{100};
 
 vk::SampleCountFlagBits sampleCount(const RendererOptions& options) {
@@ -33,32 +33,35 @@ BandPlan bandPlan(const RendererOptions& options) {
   return planBands(options.bands, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-// One device, or as many of a CPU as are planned.
-Result<std::vector<std::unique_ptr<GpuDevice>>> createDevices(const RendererOptions& options) {
+using Gpus = std::vector<std::unique_ptr<GpuDevice>>;
+
+Result<void> addDevice(const DeviceOptions& options, Gpus& gpus) {
+  auto gpu = createDevice(options);
+  if (!gpu) return tl::unexpected(gpu.error());
+  gpus.push_back(std::move(*gpu));
+  return {};
+}
+
+// One device, or as many of a CPU as are planned, as long as it has memory for them.
+Result<Gpus> createDevices(const RendererOptions& options) {
   const BandPlan plan = bandPlan(options);
   DeviceOptions asked{options.device, options.validate, options.window};
-  if (plan.bands > 1) asked.rasterThreads = plan.rasterThreads;
-  std::vector<std::unique_ptr<GpuDevice>> gpus;
-  const auto add = [&]() -> Result<void> {
-    auto gpu = createDevice(asked);
-    if (!gpu) return tl::unexpected(gpu.error());
-    gpus.push_back(std::move(*gpu));
-    return {};
-  };
-  if (auto made = add(); !made) return tl::unexpected(made.error());
-  if (plan.bands == 1) return gpus;
-  const DeviceTraits& traits = gpus.front()->traits;
-  if (!traits.isCpu) return gpus;
-  if (traits.sharedMemoryAlignment == 0) {  // one for all then, with all threads
-    gpus.clear();
-    asked.rasterThreads.reset();
-    if (auto made = add(); !made) return tl::unexpected(made.error());
-    return gpus;
+  Gpus gpus;
+  if (plan.bands > 1) {
+    const RasterThreads threads(plan.rasterThreads);
+    asked.oneOfSeveral = true;
+    if (auto made = addDevice(asked, gpus); !made) return tl::unexpected(made.error());
+    const GpuDevice& first = *gpus.front();
+    if (!first.traits.isCpu) return gpus;
+    const DeviceOptions other{first.description.name, options.validate, false, true};
+    while (first.traits.sharedMemoryAlignment > 0 && gpus.size() < static_cast<size_t>(plan.bands) &&
+           addDevice(other, gpus)) {
+    }
+    if (gpus.size() > 1) return gpus;
+    gpus.clear();  // one for all then, with all threads
+    asked.oneOfSeveral = false;
   }
-  asked.name = gpus.front()->description.name;
-  asked.window = false;
-  while (gpus.size() < static_cast<size_t>(plan.bands))
-    if (auto made = add(); !made) return tl::unexpected(made.error());
+  if (auto made = addDevice(asked, gpus); !made) return tl::unexpected(made.error());
   return gpus;
 }
 

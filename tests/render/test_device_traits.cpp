@@ -103,6 +103,19 @@ TEST_CASE("only what is needed is enabled") {
   CHECK(enabled.get<vk::PhysicalDeviceVulkan13Features>().maintenance4);
 }
 
+TEST_CASE("memory is shared by devices whose way with pixels is known, where they can import it") {
+  DeviceFacts facts = card();
+  facts.hostMemoryAlignment = 4096;
+  CHECK(chooseTraits(facts).sharedMemoryAlignment == 0);
+  facts.driver = vk::DriverId::eGoogleSwiftshader;
+  CHECK(chooseTraits(facts).sharedMemoryAlignment == 0);
+  facts.driver = vk::DriverId::eMesaLlvmpipe;
+  CHECK(chooseTraits(facts).sharedMemoryAlignment == 4096);
+  CHECK(choicesText(chooseTraits(facts)).find("a band of the picture for each core") != std::string::npos);
+  facts.hostMemoryAlignment = 0;
+  CHECK(chooseTraits(facts).sharedMemoryAlignment == 0);
+}
+
 TEST_CASE("what a device lacks is named") {
   DeviceFacts facts = card();
   facts.features.get<Core>().features.setMultiDrawIndirect(false);
