@@ -52,7 +52,7 @@ DepthMapChoice AdaptiveSelector::choose(double sum) {
 void AdaptiveSelector::concludeTrial(bool measured, double sum) {
   const bool againstOff = held_ == DepthMapChoice::off || trial_->choice == DepthMapChoice::off;
   const DepthMapChoice before = held_;
-  if (measured && againstOff) model_.compareWithOff();
+  const bool isOfTwoPlaces = measured && againstOff && !model_.compareWithOff();
   if (measured && held_ == DepthMapChoice::off) {
     const DepthMapChoice best = model_.bestSize(sum);
     if (model_.gainMs(best, sum) > rules_.hysteresis * model_.offMs()) hold(best);
@@ -61,6 +61,12 @@ void AdaptiveSelector::concludeTrial(bool measured, double sum) {
   }
   trial_.reset();
   framesSinceTrial_ = 0;
+  if (isOfTwoPlaces) {
+    // A size that is held all the same is compared with off here at once.
+    if (held_ != before) framesSinceTrial_ = intervalFrames_;
+    return;
+  }
+  triedSum_ = sum;
   if (held_ == before) intervalFrames_ = std::min(2 * intervalFrames_, rules_.longestIntervalFrames);
 }
 
@@ -92,7 +98,10 @@ std::optional<DepthMapChoice> AdaptiveSelector::dueTrial(double sum) {
   }
   const DepthMapChoice best = model_.bestSize(sum);
   const bool promising = model_.gainMs(best, sum) > rules_.hysteresis * model_.offMs();
-  if (framesSinceTrial_ < (promising ? rules_.firstIntervalFrames : intervalFrames_)) return std::nullopt;
+  // What a trial has found in another place may say nothing of this one.
+  const bool isElsewhere = std::abs(sum - triedSum_) > rules_.measurementReach;
+  if (framesSinceTrial_ < (promising || isElsewhere ? rules_.firstIntervalFrames : intervalFrames_))
+    return std::nullopt;
   if (!model_.affords(best, ownFrames())) return std::nullopt;
   return best;
 }

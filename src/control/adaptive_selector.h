@@ -3,8 +3,8 @@
 // Memberships of height over relief and of pitch, weighted and summed, stand for a share of hidden triangles until one
 // is measured (pass_model.h); the size that is expected to gain most over its cost is held, or off where none gains.
 // Every so often something else is tried for a few frames: at off a size, at a size off and its neighbours; the longer
-// nothing changes, the more seldom, and sooner where the memberships promise a gain. What all this may lose is limited
-// by a budget. Time is counted in calls: one a frame.
+// nothing changes, the more seldom, and sooner where the memberships promise a gain or are no longer those of the last
+// trial. What all this may lose is limited by a budget. Time is counted in calls: one a frame.
 #pragma once
 
 #include <optional>
@@ -35,6 +35,7 @@ class AdaptiveSelector {
   AdaptiveRules rules_;
   PassModel model_;
   double decidedSum_ = 0;  // of the newest decision
+  double triedSum_ = 0;    // of the newest trial
   DepthMapChoice held_ = DepthMapChoice::off;
   std::optional<Trial> trial_;
   int framesHeld_ = 0, framesSinceTrial_ = 0, intervalFrames_ = 0;

@@ -52,9 +52,15 @@ void PassModel::learn(const SelectorInput& input, double sum) {
 
   framesMeasured_ = std::min(framesMeasured_ + 1, rules_.trialFrames);
   if (!on) {
+    if (!isNear(sum, offSum_)) drawOffMs_.restart();
+    offSum_ = sum;
     drawOffMs_.add(input.frameCostMs);
     if (submitted_ > 0) triangleCost_.bound(drawOffMs_.median() / submitted_);
     return;
+  }
+  if (shareMeasured_ && !isNear(sum, measuredSum_)) {
+    drawOnMs_.restart();
+    occluded_.restart();
   }
   drawOnMs_.add(input.frameCostMs - passMs);
   occluded_.add(occluded);
@@ -65,9 +71,15 @@ void PassModel::learn(const SelectorInput& input, double sum) {
   measuredSum_ = sum;
 }
 
-void PassModel::compareWithOff() {
-  if (drawOffMs_.any() && drawOnMs_.any())
-    triangleCost_.observe(drawOffMs_.median() - drawOnMs_.median(), occluded_.mean());
+bool PassModel::compareWithOff() {
+  if (!drawOffMs_.any() || !drawOnMs_.any() || !isNear(measuredSum_, offSum_)) return false;
+  triangleCost_.observe(drawOffMs_.median() - drawOnMs_.median(), occluded_.mean());
+  return true;
+}
+
+// Frames with such sums may be of one place; else the eye has jumped between them, as a host may have it do.
+bool PassModel::isNear(double sum, double otherSum) const {
+  return std::abs(sum - otherSum) <= rules_.measurementReach;
 }
 
 // Paper 001's eq. (2) with two rules: "still as measured" speaks for the measured share, its negation for the share

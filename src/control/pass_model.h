@@ -15,8 +15,9 @@ class PassModel {
 
   // The newest measurement; `sum` of the memberships when its frame was decided.
   void learn(const SelectorInput& input, double sum);
-  // After a trial that went from off to a size or back: the two neighbouring runs tell what a triangle costs.
-  void compareWithOff();
+  // After a trial that went from off to a size or back: the two neighbouring runs tell what a triangle costs. False
+  // where they are of two places.
+  bool compareWithOff();
 
   // CPU time that a size would save against off at this sum of memberships; 0 for off.
   double gainMs(DepthMapChoice choice, double sum) const;
@@ -34,6 +35,7 @@ class PassModel {
   int framesMeasured() const { return framesMeasured_; }
 
  private:
+  bool isNear(double sum, double otherSum) const;
   double expectedShare(DepthMapChoice size, double sum) const;
 
   AdaptiveRules rules_;
@@ -45,7 +47,7 @@ class PassModel {
   double submitted_ = 0;                // triangles, newest
   double provenGainMs_ = 0;             // of the newest frame
   bool shareMeasured_ = false;
-  double measuredSum_ = 0;  // of the frame whose share was measured last
+  double measuredSum_ = 0, offSum_ = 0;  // of the frame whose share was measured last; of the last without the pass
   DepthMapChoice used_ = DepthMapChoice::off;
   int framesInUse_ = 0, framesMeasured_ = 0;
   int settleFrames_ = 0;  // of what is in use, before it is learnt from

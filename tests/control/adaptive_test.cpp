@@ -114,6 +114,46 @@ TEST_CASE("measurements may come some frames late") {
   CHECK(result.worstOver < 0.02);
 }
 
+TEST_CASE("what trials over a plain have found is not held against mountains") {
+  const int mountainsFrame = 3 * kMinuteFrames;
+  const auto flight = [](int frame) {
+    Place place;
+    const bool isPlain = frame < mountainsFrame;
+    place.reliefM = isPlain ? 600 : 1500;
+    place.heightAboveGroundM = isPlain ? 700 : 100;
+    place.triangles = 60000;
+    place.hiddenShare = isPlain ? 0.3 : 0.7;
+    if (isPlain) place.occludedNs = 0;  // they lie between pixels' centres
+    return place;
+  };
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    INFO("seed " << seed);
+    const FlightResult result = fly(flight, pyramidMachine(), mountainsFrame + 600, {}, seed);
+    const auto first = result.choices.begin() + mountainsFrame;
+    CHECK(std::count(first - 1000, first, DepthMapChoice::off) >= 980);
+    CHECK(std::count(first + 80, result.choices.end(), DepthMapChoice::off) < 520 * 3 / 100);
+  }
+}
+
+TEST_CASE("set down in mountains by its host it does not compare them with the plain that it comes from") {
+  const int mountainsFrame = kMinuteFrames;
+  const auto flight = [](int frame) {
+    Place place;
+    const bool isPlain = frame < mountainsFrame;
+    place.reliefM = isPlain ? 100 : 1500;
+    place.heightAboveGroundM = isPlain ? 2400 : 30;
+    place.triangles = isPlain ? 20000 : 150000;
+    place.hiddenShare = isPlain ? 0 : 0.8;
+    return place;
+  };
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    INFO("seed " << seed);
+    const FlightResult result = fly(flight, pyramidMachine(), mountainsFrame + 600, {}, seed);
+    const auto first = result.choices.begin() + mountainsFrame;
+    CHECK(std::count(first + 80, result.choices.end(), DepthMapChoice::off) < 520 * 3 / 100);
+  }
+}
+
 TEST_CASE("descending into mountains it tries at once, not when its interval has passed") {
   const int descentFrame = 2 * kMinuteFrames;
   const auto descent = [](int frame) {

@@ -12,11 +12,11 @@ constexpr int kWindowFrames = 600;
 
 double frameMs(const Machine& machine, const Place& place, DepthMapChoice choice, bool warm) {
   const double hidden = place.triangles * place.hiddenShare;
-  const double offMs =
-      machine.fixedMs + ((place.triangles - hidden) * machine.visibleNs + hidden * machine.occludedNs) * 1e-6;
+  const double occludedNs = place.occludedNs.value_or(machine.occludedNs);
+  const double offMs = machine.fixedMs + ((place.triangles - hidden) * machine.visibleNs + hidden * occludedNs) * 1e-6;
   if (choice == DepthMapChoice::off) return offMs;
   const size_t size = sizeIndex(choice);
-  const double savedMs = warm ? hidden * machine.found[size] * machine.occludedNs * 1e-6 : 0;
+  const double savedMs = warm ? hidden * machine.found[size] * occludedNs * 1e-6 : 0;
   return offMs - savedMs + machine.passMs[size];
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "control/fuzzy_selector.h"
@@ -24,6 +25,7 @@ struct Place {
   double heightAboveGroundM = 0, reliefM = 0, pitchDeg = 0;
   double triangles = 0;
   double hiddenShare = 0;
+  std::optional<double> occludedNs{};  // instead of the machine's
 };
 using Flight = std::function<Place(int frame)>;
 
