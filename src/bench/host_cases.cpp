@@ -122,16 +122,18 @@ std::vector<TransportDelay> transportDelays(const std::vector<ShownFrame>& frame
 }
 
 Result<FloodFigures> showUnderFlood(LiveShow& show, HostProtocol protocol, FloodKind kind, const NumberedPoses& poses,
-                                    double durationS) {
+                                    double durationS, std::optional<SteadyHost>& host) {
   FloodFigures figures;
-  if (const auto free = awaitFreeHost(show); !free) return tl::unexpected(free.error());
   const auto unread = UdpSocket::listenOn({kLoopbackAddress, 0});
   if (!unread) return tl::unexpected(unread.error());
   // The host's own floods are the host itself, gone wild. A stranger comes when the host is known.
-  std::optional<SteadyHost> host;
-  if (!isHosts(kind)) host.emplace(protocol, show.port(), poses);
-  if (host)
+  if (isHosts(kind)) host.reset();
+  if (!host)
+    if (const auto free = awaitFreeHost(show); !free) return tl::unexpected(free.error());
+  if (!host && !isHosts(kind)) {
+    host.emplace(protocol, show.port(), poses);
     if (const auto known = show.show(kKnownS); !known) return tl::unexpected(known.error());
+  }
   std::optional<Flood> flood;
   if (kind != FloodKind::none)
     flood.emplace(kind == FloodKind::elsewhere ? unread->port() : show.port(), kFloodHz,
@@ -163,7 +165,6 @@ Result<FloodFigures> showUnderFlood(LiveShow& show, HostProtocol protocol, Flood
 
 Result<double> trackErrorM(LiveShow& show, HostProtocol protocol, const std::function<Pose(double)>& poseAt,
                            double durationS, const BadLinkOptions& link) {
-  if (const auto free = awaitFreeHost(show); !free) return tl::unexpected(free.error());
   const FlightOverBadLink flight(protocol, show.port(), poseAt, durationS + 2 * kLearningS, link);
   if (const auto learnt = show.show(kLearningS); !learnt) return tl::unexpected(learnt.error());
   const auto frames = show.show(durationS);
@@ -226,7 +227,6 @@ Result<AnswerTimes> timeAnswers(const std::vector<cigi::GroundQuestion>& questio
 
 Result<AskedAndAnswered> askHeights(LiveShow& show, const NumberedPoses& poses, const Geodetic& place,
                                     double durationS) {
-  if (const auto free = awaitFreeHost(show); !free) return tl::unexpected(free.error());
   const auto socket = UdpSocket::connectTo({kLoopbackAddress, show.port()});
   if (!socket) return tl::unexpected(socket.error());
   cigi::ReplyListener replies(*socket);

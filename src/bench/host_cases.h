@@ -1,6 +1,7 @@
 // The host suite's cases: each connects a host on the loopback and hands back figures.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,12 +32,13 @@ inline constexpr double kFloodHz = 100'000;
 inline constexpr double kFollowedS = 0.1;
 // `elsewhere`: to a socket that nobody reads, so that what sending costs the machine can be told from what receiving
 // costs the image generator. `garbage` and `strangersState` come from another address and port than the host's state
-// and go to where that arrives; the host's own come from its socket, with its state between them.
+// and go to where that arrives; the host's own come from its socket, with its state between them. `host`: that of the
+// case before, which goes on where it can, and is left to the next; none at first.
 Result<FloodFigures> showUnderFlood(LiveShow& show, HostProtocol protocol, FloodKind kind, const NumberedPoses& poses,
-                                    double durationS);
+                                    double durationS, std::optional<SteadyHost>& host);
 
 // How far the eye was from where the aircraft was at its frames' times, root mean square, metres; without the first
-// seconds, in which the filter learns.
+// seconds, in which the filter learns. Of a show that no host has spoken to yet, like the next.
 Result<double> trackErrorM(LiveShow& show, HostProtocol protocol, const std::function<Pose(double)>& poseAt,
                            double durationS, const BadLinkOptions& link);
 

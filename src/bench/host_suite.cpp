@@ -14,8 +14,8 @@
 namespace eye {
 namespace {
 
-constexpr double kShowS = 20, kQuickShowS = 3;
-constexpr double kFloodS = 60, kQuickFloodS = 3;
+constexpr double kShowS = 20, kQuickShowS = 2;
+constexpr double kFloodS = 60, kQuickFloodS = 2;
 // Parts of these seconds: each kind in turn, so that a busy minute slows all of them. A quick run has no such minutes.
 constexpr int kFloodRounds = 3;
 constexpr double kTrackS = 30, kQuickTrackS = 3;
@@ -133,12 +133,13 @@ class HostSuite {
     if (!show) return tl::unexpected(show.error());
     const NumberedPoses poses(start());
     std::array<FloodFigures, kFloods.size()> all{};
+    std::optional<SteadyHost> host;
     const int rounds = roundsOf(options_);
     for (int round = 0; round < rounds; ++round) {
       for (size_t i = 0; i < kFloods.size(); ++i) {
         begin(fmt::format("{}: {}", name, kFloodNames[i]));
-        const auto figures =
-            showUnderFlood(*show, protocol, kFloods[i], poses, (options_.quick ? kQuickFloodS : kFloodS) / rounds);
+        const auto figures = showUnderFlood(*show, protocol, kFloods[i], poses,
+                                            (options_.quick ? kQuickFloodS : kFloodS) / rounds, host);
         if (!figures) return tl::unexpected(figures.error());
         FloodFigures& sum = all[i];
         sum.frameMs.insert(sum.frameMs.end(), figures->frameMs.begin(), figures->frameMs.end());
