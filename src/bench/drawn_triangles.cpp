@@ -13,13 +13,15 @@ namespace {
 constexpr size_t kChunksKept = 4096;  // some 20 KB each without their textures
 
 // The surface's triangles in clusters that were drawn; without a depth map all of them.
-std::vector<TriangleFate> surfaceFates(const LoadedChunk& chunk, std::span<const uint32_t> clusterFates) {
+// `clusters`: the chunk's, empty where all of it is drawn.
+std::vector<TriangleFate> surfaceFates(const LoadedChunk& chunk, std::span<const TriangleBits> clusters) {
   std::vector<TriangleFate> fates(chunk.surfaceIndexCount / 3, TriangleFate::hidden);
-  if (clusterFates.empty()) return fates;
+  if (clusters.empty()) return fates;
   for (size_t i = 0; i < chunk.mesh.clusters.size(); ++i) {
-    if ((clusterFates[i] & (EYE_FATE_EARLY | EYE_FATE_LATE)) != 0) continue;
     const ChunkCluster& cluster = chunk.mesh.clusters[i];
-    std::fill_n(fates.begin() + cluster.firstIndex / 3, cluster.indexCount / 3, TriangleFate::notSubmitted);
+    for (size_t t = 0; t < cluster.indexCount / 3; ++t)
+      if (clusters[i] != kAllTriangles && (t >= 64 || (clusters[i] >> t & 1) == 0))
+        fates[cluster.firstIndex / 3 + t] = TriangleFate::notSubmitted;
   }
   return fates;
 }
@@ -64,6 +66,16 @@ Result<std::shared_ptr<const LoadedChunk>> ChunkShelf::chunk(const TileKey& key)
   return chunks_.emplace(key, std::make_shared<const LoadedChunk>(std::move(*loaded))).first->second;
 }
 
+std::vector<TriangleBits> drawnTrianglesInPool(const CullReadBack& culling) {
+  std::vector<TriangleBits> drawn(culling.clusters.size());
+  for (size_t i = 0; i < culling.candidates.size(); ++i) {
+    if ((culling.fates[i] & (EYE_FATE_EARLY | EYE_FATE_LATE)) == 0) continue;
+    const uint32_t cluster = culling.candidates[i].cluster;
+    drawn[cluster] = culling.visibleTriangles.empty() ? kAllTriangles : culling.visibleTriangles[cluster];
+  }
+  return drawn;
+}
+
 std::vector<uint32_t> fatesInPool(const CullReadBack& culling) {
   std::vector<uint32_t> fates(culling.clusters.size());
   for (size_t i = 0; i < culling.candidates.size(); ++i) fates[culling.candidates[i].cluster] = culling.fates[i];
@@ -82,16 +94,16 @@ bool isOffScreen(const FrustumPlanes& planes, const std::array<Vec3d, 3>& corner
 
 Result<DrawnTriangles> drawnTriangles(ImageGenerator& generator, ChunkShelf& shelf) {
   const FrameInput input = generator.lastInput();
-  std::vector<uint32_t> clusterFates;
-  if (input.depthMapPx) clusterFates = fatesInPool(generator.renderer().readCulling());
+  std::vector<TriangleBits> drawnInPool;
+  if (input.depthMapPx) drawnInPool = drawnTrianglesInPool(generator.renderer().readCulling());
   DrawnTriangles drawn;
   for (size_t i = 0; i < input.draws.size(); ++i) {
     const ChunkDraw& draw = input.draws[i];
     auto chunk = shelf.chunk(generator.terrain().node(generator.selection().draws[i].node).meta.key);
     if (!chunk) return tl::unexpected(chunk.error());
     const size_t clusters = (*chunk)->mesh.clusters.size();
-    std::span<const uint32_t> own;
-    if (!clusterFates.empty()) own = std::span(clusterFates).subspan(draw.gpu.clusterOffset, clusters);
+    std::span<const TriangleBits> own;
+    if (!drawnInPool.empty()) own = std::span(drawnInPool).subspan(draw.gpu.clusterOffset, clusters);
     drawn.runs.push_back({.draw = i, .skirtSide = -1, .firstIndex = 0, .fates = surfaceFates(**chunk, own)});
     for (int side = 0; side < 4; ++side) {
       const SkirtRange& skirt = draw.skirts[static_cast<size_t>(side)];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/image_generator.h"
+#include "render/triangle_cull.h"
 #include "terrain/database.h"
 
 namespace eye {
@@ -66,6 +67,9 @@ Result<DrawnTriangles> drawnTriangles(ImageGenerator& generator, ChunkShelf& she
 // What the last frame's culling made of each cluster, by its place in the renderer's pool (GpuChunk::clusterOffset and
 // on): the renderer takes draws in an order of its own.
 std::vector<uint32_t> fatesInPool(const CullReadBack& culling);
+
+// Which triangles of each cluster of the pool it has drawn, of a still eye: those that showed, where the CPU culls.
+std::vector<TriangleBits> drawnTrianglesInPool(const CullReadBack& culling);
 
 // Behind one plane of the frustum with all corners, which are relative to the eye.
 bool isOffScreen(const FrustumPlanes& planes, const std::array<Vec3d, 3>& corners);

@@ -109,9 +109,9 @@ ChunkPools::ChunkPools(GpuDevices gpus, const PoolPlan& plan, std::vector<GpuIma
       layers_(plan.layers),
       textures_(std::move(textures)) {
   using Use = vk::BufferUsageFlagBits;
-  vertexBuffers_ = createBuffers(gpus, plan.vertices * sizeof(ChunkVertex), Use::eVertexBuffer | Use::eTransferDst,
-                                 MemoryUse::device);
   const MemoryUse cullUse = cullsOnHost ? MemoryUse::readBack : MemoryUse::device;
+  vertexBuffers_ =
+      createBuffers(gpus, plan.vertices * sizeof(ChunkVertex), Use::eVertexBuffer | Use::eTransferDst, cullUse);
   indexBuffers_ = createBuffers(gpus, plan.indices * sizeof(uint16_t), Use::eIndexBuffer | Use::eTransferDst, cullUse);
   clusterBuffer_ = createBuffer(gpu_, plan.clusters * sizeof(shader::ClusterRecord),
                                 Use::eStorageBuffer | Use::eTransferDst | Use::eTransferSrc, cullUse);

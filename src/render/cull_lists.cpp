@@ -114,6 +114,7 @@ void CullLists::write(std::span<const ChunkDraw> draws, size_t byVertex, const V
   const auto chunks = chunks_.as<shader::CullChunk>();
   const auto candidates = candidates_.as<shader::CullCandidate>();
   uint32_t count = 0;
+  frames_.clear();
   for (uint32_t i = 0; i < draws.size(); ++i) {
     const ChunkDraw& draw = draws[i];
     if (i == byVertex) candidatesByVertex_ = count;
@@ -125,6 +126,9 @@ void CullLists::write(std::span<const ChunkDraw> draws, size_t byVertex, const V
                  .unused0 = 0,
                  .axisZ_ecef = glm::vec3(draw.box.halfAxesEcefM[2]),
                  .unused1 = 0};
+    if (onHost_)
+      frames_.push_back(
+          {ecefFromLattice(draw.originLattice, draw.stepM) - view.eyeEcefM, draw.stepM, draw.gpu.vertexCount});
     for (uint32_t k = 0; k < draw.gpu.clusterCount; ++k) candidates[count++] = {draw.gpu.clusterOffset + k, i};
   }
   candidateCount_ = count;
@@ -154,27 +158,32 @@ std::vector<BandDraws> CullLists::bandDraws(GpuBuffer PerDevice::*commands) cons
   return bands;
 }
 
-HostCull CullLists::hostCull(const ChunkPools& pools, std::span<const BandDraws> bands,
-                             const BandTest& bandTest) const {
+HostCull CullLists::hostCull(const ChunkPools& pools, std::span<const BandDraws> bands, const BandTest& bandTest) {
+  visibleTriangles_.resize(pools.clusterCapacity());
   return {.params = params(),
           .chunks = chunks_.as<const shader::CullChunk>().first(chunkCount_),
           .candidates = candidates_.as<const shader::CullCandidate>().first(candidateCount_),
           .clusters = pools.clusterBuffer().as<const shader::ClusterRecord>(),
           .visible = pools.visibleBuffer().as<uint32_t>(),
           .indices = pools.indexBuffer().as<const uint16_t>(),
+          .vertices = pools.vertexBuffer().as<const ChunkVertex>(),
+          .frames = frames_,
+          .visibleTriangles = visibleTriangles_,
           .fates = fates_.as<uint32_t>(),
           .bands = bands,
           .bandTest = bandTest};
 }
 
 void CullLists::cullEarly(const ChunkPools& pools, const BandTest& bandTest) {
-  earlyIndices_ = eye::cullEarly(hostCull(pools, bandDraws(&PerDevice::early), bandTest));
+  triangles_ = {};
+  earlyIndices_ = eye::cullEarly(hostCull(pools, bandDraws(&PerDevice::early), bandTest), triangles_);
 }
 
-void CullLists::cullLate(const ChunkPools& pools, const BandTest& bandTest) {
+void CullLists::cullLate(const ChunkPools& pools, const BandTest& bandTest, bool atCentres) {
   const auto pyramid = pyramid_.as<float>();
   hostPyramid_.build(depth_.front().as<const float>(), params().picturePx, params().mapPx, pyramid);
-  eye::cullLate(hostCull(pools, bandDraws(&PerDevice::late), bandTest), pyramid, earlyIndices_);
+  TriangleCull triangles(params(), depth_.front().as<const float>(), atCentres);
+  eye::cullLate(hostCull(pools, bandDraws(&PerDevice::late), bandTest), pyramid, triangles, earlyIndices_, triangles_);
 }
 
 CullCounts CullLists::counts() const {
@@ -190,6 +199,10 @@ CullCounts CullLists::counts() const {
     counts.backFacing += why == EYE_FATE_BACK_FACING;
     counts.occluded += why == EYE_FATE_OCCLUDED;
     if (why == EYE_FATE_OCCLUDED) counts.trianglesOccluded += triangles;
+  }
+  if (onHost_) {
+    counts.trianglesDrawn = triangles_.drawn;
+    counts.trianglesOccluded += triangles_.occluded;
   }
   return counts;
 }

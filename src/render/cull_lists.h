@@ -26,10 +26,12 @@ class CullLists {
   // With onHost, before the early draws and when their depth has been copied: what else the passes of CullPass do. The
   // pools' clusters must be mapped.
   void cullEarly(const ChunkPools& pools, const BandTest& bandTest);
-  void cullLate(const ChunkPools& pools, const BandTest& bandTest);
+  void cullLate(const ChunkPools& pools, const BandTest& bandTest, bool atCentres);  // see TriangleCull
   // Of the frame that has just finished.
   CullCounts counts() const;
   bool onHost() const { return onHost_; }
+  // By cluster of the pool; empty without onHost.
+  std::span<const TriangleBits> visibleTriangles() const { return visibleTriangles_; }
 
   int longestSpanPx() const { return longestSpanPx_; }  // pixels that a texel of the map touches along an axis
   uint32_t chunkCount() const { return chunkCount_; }
@@ -57,13 +59,17 @@ class CullLists {
   };
 
   std::vector<BandDraws> bandDraws(GpuBuffer PerDevice::*commands) const;
-  HostCull hostCull(const ChunkPools& pools, std::span<const BandDraws> bands, const BandTest& bandTest) const;
+  HostCull hostCull(const ChunkPools& pools, std::span<const BandDraws> bands, const BandTest& bandTest);
   void writePixelSpans(glm::ivec2 picturePx, glm::ivec2 mapPx);
 
   bool onHost_;
   DepthPyramid hostPyramid_;
   size_t chunkCapacity_ = 0, candidateCapacity_ = 0, depthCapacity_ = 0, pyramidCapacity_ = 0, spansCapacity_ = 0,
          packedCapacity_ = 0;
+  // With onHost: by chunk, by cluster of the pool, and of the frame.
+  std::vector<VertexFrame> frames_;
+  std::vector<TriangleBits> visibleTriangles_;
+  TriangleCounts triangles_;
   std::vector<size_t> earlyIndices_;  // of the frame's early draws, by band
   uint32_t chunkCount_ = 0, candidateCount_ = 0, candidatesByVertex_ = 0;
   GpuBuffer params_, chunks_, candidates_, fates_, pyramid_, pixelSpans_;

@@ -49,7 +49,7 @@ void Renderer::Impl::cullLate(const FrameInput& input, const BandTest& bandTest,
   {
     const TraceScope scope("cull late");
     const int64_t beganNs = monotonicNs();
-    cullLists->cullLate(*pools, bandTest);
+    cullLists->cullLate(*pools, bandTest, first().farthest == nullptr);
     hostLateMs = millisecondsSince(beganNs);
   }
   for (size_t i = 0; i < used; ++i) bands[i]->frame.begin();

@@ -28,7 +28,8 @@ glm::vec3 clipRow(const shader::FrameData& data, int row) {
   return {m[0][row], m[1][row], m[2][row]};
 }
 
-std::vector<uint16_t> copyOf(std::span<const uint16_t> values) {
+template <class T>
+std::vector<T> copyOf(std::span<const T> values) {
   return {values.begin(), values.end()};
 }
 
@@ -340,7 +341,8 @@ CullReadBack Renderer::readCulling() const {
       .fates = readBuffer<uint32_t>(gpu, lists.fatesBuffer(), candidates),
       .depth = readBuffer<float>(gpu, lists.depthBuffer(), pixels),
       .pyramid = readBuffer<float>(gpu, lists.pyramidBuffer(), pyramidLayout(params.mapPx).texels),
-      .indices = lists.onHost() ? copyOf(impl_->pools->indexBuffer().as<const uint16_t>()) : std::vector<uint16_t>{}};
+      .indices = lists.onHost() ? copyOf(impl_->pools->indexBuffer().as<const uint16_t>()) : std::vector<uint16_t>{},
+      .visibleTriangles = copyOf(lists.visibleTriangles())};
 }
 
 void Renderer::presentAgain() {

@@ -134,6 +134,9 @@ struct CullReadBack {
   std::vector<uint32_t> fates;
   std::vector<float> depth, pyramid;  // of the early pass; all levels
   std::vector<uint16_t> indices;      // where the CPU culls, of the resident chunks
+  // Where the CPU culls, by cluster of the pool, meant where it is visible: a bit for each triangle that shows, see
+  // triangle_cull.h.
+  std::vector<uint64_t> visibleTriangles;
 };
 
 class Renderer final : public GpuStore {

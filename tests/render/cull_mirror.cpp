@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "shared/cull.h"
 
 namespace eye::test {
@@ -77,9 +79,10 @@ CullMirror mirrorOf(const CullReadBack& gpu) {
 
 namespace {
 
-// Times that each candidate is drawn where commands draw from the pool: clusters that lie behind one another.
-std::vector<uint32_t> drawnFromPool(const CullReadBack& gpu, const std::vector<DrawCommand>& commands) {
-  std::vector<uint32_t> times(gpu.candidates.size());
+// Of each candidate's triangles, how often they are drawn. Where commands draw from the pool: clusters that lie behind
+// one another.
+std::optional<TriangleTimes> drawnFromPool(const CullReadBack& gpu, const std::vector<DrawCommand>& commands,
+                                           TriangleTimes times) {
   for (size_t i = 0; i < commands.size(); ++i) {
     if (commands[i].instanceCount == 0) continue;
     uint32_t next = commands[i].firstIndex, left = commands[i].indexCount;
@@ -87,8 +90,8 @@ std::vector<uint32_t> drawnFromPool(const CullReadBack& gpu, const std::vector<D
       const ClusterRecord& cluster = gpu.clusters.at(gpu.candidates.at(k).cluster);
       if (cluster.firstIndex != next || cluster.indexCount > left ||
           gpu.chunks[gpu.candidates[k].chunk].draw != commands[i].firstInstance)
-        return {};
-      ++times[k];
+        return std::nullopt;
+      for (uint32_t& triangle : times[k]) ++triangle;
       next += cluster.indexCount;
       left -= cluster.indexCount;
     }
@@ -96,24 +99,25 @@ std::vector<uint32_t> drawnFromPool(const CullReadBack& gpu, const std::vector<D
   return times;
 }
 
-// And where they draw packed indices: clusters of the chunk in their order, each with the indices that the pool has.
-std::vector<uint32_t> drawnPacked(const CullReadBack& gpu, const std::vector<DrawCommand>& commands,
-                                  const std::vector<uint16_t>& packed) {
-  std::vector<uint32_t> times(gpu.candidates.size());
+// And where they draw packed indices: triangles of the chunk's clusters in their order.
+std::optional<TriangleTimes> drawnPacked(const CullReadBack& gpu, const std::vector<DrawCommand>& commands,
+                                         const std::vector<uint16_t>& packed, TriangleTimes times) {
   for (size_t i = 0; i < commands.size(); ++i) {
     if (commands[i].instanceCount == 0) continue;
     const CullChunk& chunk = gpu.chunks[gpu.candidates[i].chunk];
-    if (commands[i].firstInstance != chunk.draw || commands[i].vertexOffset != chunk.vertexOffset) return {};
+    if (commands[i].firstInstance != chunk.draw || commands[i].vertexOffset != chunk.vertexOffset) return std::nullopt;
     auto next = packed.begin() + commands[i].firstIndex;
     const auto end = next + commands[i].indexCount;
     for (size_t k = i; next != end; ++k) {
-      if (k == gpu.candidates.size() || gpu.candidates[k].chunk != gpu.candidates[i].chunk) return {};
-      const ClusterRecord& cluster = gpu.clusters.at(gpu.candidates[k].cluster);
-      const auto first = gpu.indices.begin() + cluster.firstIndex;
-      if (cluster.indexCount > static_cast<size_t>(end - next) || !std::equal(first, first + cluster.indexCount, next))
-        continue;
-      ++times[k];
-      next += cluster.indexCount;
+      if (k == gpu.candidates.size() || gpu.candidates[k].chunk != gpu.candidates[i].chunk) return std::nullopt;
+      auto corner = gpu.indices.begin() + gpu.clusters.at(gpu.candidates[k].cluster).firstIndex;
+      for (uint32_t& triangle : times[k]) {
+        if (next != end && std::equal(next, next + 3, corner)) {
+          ++triangle;
+          next += 3;
+        }
+        corner += 3;
+      }
     }
   }
   return times;
@@ -121,16 +125,45 @@ std::vector<uint32_t> drawnPacked(const CullReadBack& gpu, const std::vector<Dra
 
 }  // namespace
 
-std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu,
-                                    std::vector<DrawCommand> CullReadBack::BandDraws::*commands) {
-  std::vector<uint32_t> most(gpu.candidates.size());
+std::optional<TriangleTimes> trianglesDrawn(const CullReadBack& gpu,
+                                            std::vector<DrawCommand> CullReadBack::BandDraws::*commands) {
+  TriangleTimes none;
+  for (const CullCandidate& candidate : gpu.candidates)
+    none.emplace_back(gpu.clusters[candidate.cluster].indexCount / 3);
+  TriangleTimes most = none;
   for (const CullReadBack::BandDraws& band : gpu.bands) {
-    const std::vector<uint32_t> times =
-        band.packed.empty() ? drawnFromPool(gpu, band.*commands) : drawnPacked(gpu, band.*commands, band.packed);
-    if (times.empty()) return {};
-    for (size_t i = 0; i < most.size(); ++i) most[i] = std::max(most[i], times[i]);
+    const auto times = band.packed.empty() ? drawnFromPool(gpu, band.*commands, none)
+                                           : drawnPacked(gpu, band.*commands, band.packed, none);
+    if (!times) return std::nullopt;
+    for (size_t i = 0; i < most.size(); ++i)
+      for (size_t t = 0; t < most[i].size(); ++t) most[i][t] = std::max(most[i][t], (*times)[i][t]);
   }
   return most;
+}
+
+std::string wrongDraws(const CullReadBack& gpu) {
+  const auto early = trianglesDrawn(gpu, &CullReadBack::BandDraws::early),
+             late = trianglesDrawn(gpu, &CullReadBack::BandDraws::late);
+  if (!early || !late) return "a command draws what is no cluster's";
+  for (size_t i = 0; i < gpu.candidates.size(); ++i) {
+    const bool drawsEarly = (gpu.fates[i] & EYE_FATE_EARLY) != 0, drawsLate = (gpu.fates[i] & EYE_FATE_LATE) != 0;
+    const bool isVisible = (gpu.fates[i] & EYE_FATE_WHY) == EYE_FATE_VISIBLE;
+    for (size_t t = 0; t < (*early)[i].size(); ++t) {
+      const uint32_t before = (*early)[i][t], after = (*late)[i][t];
+      const auto wrong = [&](const char* what) { return fmt::format("candidate {}, triangle {}: {}", i, t, what); };
+      if (before + after > 1) return wrong("drawn twice");
+      if (before > 0 && !drawsEarly) return wrong("drawn early, its cluster is not");
+      if (after > 0 && !isVisible) return wrong("drawn late, its cluster does not show");
+      if (gpu.visibleTriangles.empty()) {
+        if (before != drawsEarly || after != drawsLate) return wrong("not as its cluster");
+        continue;
+      }
+      const uint64_t visible = gpu.visibleTriangles[gpu.candidates[i].cluster];
+      if (isVisible && before + after == 0 && (visible >> t % 64 & 1) != 0) return wrong("shows and is not drawn");
+      if (after > 0 && (visible >> t % 64 & 1) == 0) return wrong("does not show and is drawn late");
+    }
+  }
+  return "";
 }
 
 }  // namespace eye::test

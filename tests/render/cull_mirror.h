@@ -12,9 +12,13 @@ struct CullMirror {
 };
 CullMirror mirrorOf(const CullReadBack& gpu);
 
-// How often the early or late commands draw each candidate's cluster, in the band that draws it most often. Empty where
-// a command's indices are not whole clusters of one chunk behind one another, from its own candidate on.
-std::vector<uint32_t> clustersDrawn(const CullReadBack& gpu,
-                                    std::vector<shader::DrawCommand> CullReadBack::BandDraws::*commands);
+// How often the early or late commands draw each triangle, by candidate, in the band that draws it most often. Nothing
+// where a command's indices are not those of clusters of one chunk, from its own candidate on.
+using TriangleTimes = std::vector<std::vector<uint32_t>>;
+std::optional<TriangleTimes> trianglesDrawn(const CullReadBack& gpu,
+                                            std::vector<shader::DrawCommand> CullReadBack::BandDraws::*commands);
+
+// The first triangle that is not drawn as the fates have it: empty where all are.
+std::string wrongDraws(const CullReadBack& gpu);
 
 }  // namespace eye::test
