@@ -24,7 +24,8 @@ TriangleCull::TriangleCull(const shader::CullParams& params, std::span<const flo
       depth_(depth),
       widePx_(static_cast<float>(params.picturePx.x)),
       highPx_(static_cast<float>(params.picturePx.y)),
-      centrePx_(atCentres ? 0.5f : 0.0f) {}
+      centrePx_(atCentres ? 0.5f : 0.0f),
+      handed_(glm::dot(glm::cross(params.clipX_ecef, params.clipY_ecef), params.clipW_ecef) < 0 ? -1.0f : 1.0f) {}
 
 void TriangleCull::place(const VertexFrame& frame, std::span<const ChunkVertex> vertices) {
   // In doubles up to the projection: a vertex close to the eye may be far from its chunk's origin.
@@ -61,7 +62,7 @@ TriangleCull::Fate TriangleCull::fateOf(const Corner& a, const Corner& b, const 
   if (nearest > kNearDepth || right - left + bottom - top > kWidestPx) return Fate::visible;
   // Counterclockwise is clockwise where y goes down: front faces have a negative area. Corners moved by the snap change
   // it by no more than twice the sides' lengths times that.
-  const float twiceArea = (b.xPx - a.xPx) * (c.yPx - a.yPx) - (c.xPx - a.xPx) * (b.yPx - a.yPx);
+  const float twiceArea = handed_ * ((b.xPx - a.xPx) * (c.yPx - a.yPx) - (c.xPx - a.xPx) * (b.yPx - a.yPx));
   if (twiceArea > 4 * kSnapPx * (right - left + bottom - top + 1)) return Fate::elsewhere;
   if (right < -kSnapPx || bottom < -kSnapPx || left > widePx_ + kSnapPx || top > highPx_ + kSnapPx)
     return Fate::elsewhere;

@@ -59,6 +59,7 @@ class TriangleCull {
   std::span<const float> depth_;
   float widePx_, highPx_;  // the picture
   float centrePx_;         // 0.5, or 0 where a triangle may show anywhere in a pixel
+  float handed_;           // -1 in a mirrored view, where triangles go round the other way
   std::vector<Corner> corners_;
 };
 

@@ -13,10 +13,10 @@ namespace {
 constexpr int kWide = 96, kHigh = 64;
 constexpr float kNearM = 0.5f;
 
-// Looks along z, x to the right, y down: 90 degrees across.
-shader::CullParams looking() {
+// Looks along z, x to the right, y down: 90 degrees across. Mirrored: x to the left.
+shader::CullParams looking(bool isMirrored) {
   shader::CullParams params{};
-  params.clipX_ecef = {1, 0, 0};
+  params.clipX_ecef = {isMirrored ? -1 : 1, 0, 0};
   params.clipY_ecef = {0, 1.5f, 0};
   params.clipW_ecef = {0, 0, 1};
   params.nearM = kNearM;
@@ -47,9 +47,9 @@ Triangle randomTriangle(Random& random) {
 }
 
 // Nearest depth that the triangle has at any sample of a pixel, as doubles have it; 0 where it covers none.
-double depthAt(const Triangle& triangle, const VertexFrame& frame, double xPx, double yPx) {
+double depthAt(const Triangle& triangle, const VertexFrame& frame, bool isMirrored, double xPx, double yPx) {
   // The ray through the sample meets the triangle where all three volumes with its sides have one sign.
-  const glm::dvec3 ray(2 * xPx / kWide - 1, (2 * yPx / kHigh - 1) / 1.5, 1);
+  const glm::dvec3 ray((isMirrored ? -1 : 1) * (2 * xPx / kWide - 1), (2 * yPx / kHigh - 1) / 1.5, 1);
   std::array<glm::dvec3, 3> at;
   for (size_t i = 0; i < 3; ++i)
     at[i] = frame.originM + frame.stepM * glm::dvec3(triangle[i].x, triangle[i].y, triangle[i].z);
@@ -62,14 +62,16 @@ double depthAt(const Triangle& triangle, const VertexFrame& frame, double xPx, d
 }
 
 // Whether it would change the picture, at four samples a pixel or at centres.
-bool shows(const Triangle& triangle, const VertexFrame& frame, const std::vector<float>& depth, bool atCentres) {
+bool shows(const Triangle& triangle, const VertexFrame& frame, const std::vector<float>& depth, bool isMirrored,
+           bool atCentres) {
   const std::vector<glm::dvec2> samples =
       atCentres ? std::vector<glm::dvec2>{{0.5, 0.5}}
                 : std::vector<glm::dvec2>{{0.375, 0.125}, {0.875, 0.375}, {0.125, 0.625}, {0.625, 0.875}};
   for (int y = 0; y < kHigh; ++y)
     for (int x = 0; x < kWide; ++x)
       for (const glm::dvec2& sample : samples)
-        if (depthAt(triangle, frame, x + sample.x, y + sample.y) > depth[static_cast<size_t>(y * kWide + x)])
+        if (depthAt(triangle, frame, isMirrored, x + sample.x, y + sample.y) >
+            depth[static_cast<size_t>(y * kWide + x)])
           return true;
   return false;
 }
@@ -77,11 +79,11 @@ bool shows(const Triangle& triangle, const VertexFrame& frame, const std::vector
 }  // namespace
 
 TEST_CASE("no triangle is called hidden that changes a pixel, and most that change none are") {
-  const bool atCentres = GENERATE(true, false);
-  CAPTURE(atCentres);
+  const bool atCentres = GENERATE(true, false), isMirrored = GENERATE(false, true);
+  CAPTURE(atCentres, isMirrored);
   Random random;
   size_t hidden = 0, found = 0, visible = 0, occluded = 0;
-  const shader::CullParams params = looking();
+  const shader::CullParams params = looking(isMirrored);
   const VertexFrame frame{.originM = {0.25, -0.125, 0.5}, .stepM = 1, .count = 3};
   for (int round = 0; round < 30; ++round) {
     // Sky, a wall, and ground that comes nearer towards the lower edge.
@@ -97,7 +99,7 @@ TEST_CASE("no triangle is called hidden that changes a pixel, and most that chan
       const Triangle triangle = randomTriangle(random);
       cull.place(frame, triangle);
       const TriangleFates fates = cull.fatesOf(std::array<uint16_t, 3>{0, 1, 2});
-      const bool changes = shows(triangle, frame, depth, atCentres);
+      const bool changes = shows(triangle, frame, depth, isMirrored, atCentres);
       if (changes) {
         INFO("round " << round << ", triangle " << i);
         REQUIRE(fates.visible == 1);
@@ -117,7 +119,7 @@ TEST_CASE("no triangle is called hidden that changes a pixel, and most that chan
 
 TEST_CASE("a cluster of more triangles than bits is taken for visible") {
   const std::vector<float> depth(kWide * kHigh, 1.0f);
-  TriangleCull cull(looking(), depth, true);
+  TriangleCull cull(looking(false), depth, true);
   cull.place({.originM = {0, 0, 100}, .count = 3}, std::array<ChunkVertex, 3>{});
   CHECK(cull.fatesOf(std::vector<uint16_t>(3 * 65)).visible == kAllTriangles);
   CHECK(cull.fatesOf(std::vector<uint16_t>(3 * 64)).visible == 0);  // without any extent
