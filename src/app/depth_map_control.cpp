@@ -82,8 +82,8 @@ std::optional<glm::ivec2> DepthMapControl::choose(const Pose& pose, const Terrai
 void DepthMapControl::learn(const FrameOutput& output, double pagingMs) {
   if (!decision_) return;
   if (!output.depthMapPx) measured_.used = DepthMapChoice::off;  // nothing was in view to test
-  measured_.submittedTriangles = output.triangles + output.clusters.trianglesOccluded;
-  measured_.occludedTriangles = output.clusters.trianglesOccluded;
+  measured_.submittedTriangles = output.triangles + output.clusters.trianglesSpared;
+  measured_.occludedTriangles = output.clusters.trianglesSpared;
   for (const PassTime& pass : output.passes) {
     const bool isAdded = std::ranges::find(kPasses, pass.name) != kPasses.end();
     const bool isDrawing = std::ranges::find(kDrawing, pass.name) != kDrawing.end();

@@ -198,11 +198,11 @@ CullCounts CullLists::counts() const {
     counts.outside += why == EYE_FATE_OUTSIDE;
     counts.backFacing += why == EYE_FATE_BACK_FACING;
     counts.occluded += why == EYE_FATE_OCCLUDED;
-    if (why == EYE_FATE_OCCLUDED) counts.trianglesOccluded += triangles;
+    if (why == EYE_FATE_OCCLUDED) counts.trianglesSpared += triangles;
   }
   if (onHost_) {
     counts.trianglesDrawn = triangles_.drawn;
-    counts.trianglesOccluded += triangles_.occluded;
+    counts.trianglesSpared += triangles_.spared;
   }
   return counts;
 }

@@ -120,7 +120,7 @@ void cullLate(const HostCull& cull, std::span<const float> pyramid, TriangleCull
       late = found.visible & ~(wasDrawn != 0 ? visible : 0);
       visible = found.visible;
       counts.drawn += countOf(late, cluster);
-      counts.occluded += found.occluded;
+      counts.spared += cluster.indexCount / 3 - countOf(found.visible, cluster);
     }
     putInBands(packers, i, late, cull.bandTest, box);
     cull.visible[number] = fate == EYE_FATE_VISIBLE ? 1 : 0;

@@ -52,7 +52,7 @@ struct HostCull {
 // Of the surfaces.
 struct TriangleCounts {
   uint64_t drawn = 0;
-  uint64_t occluded = 0;  // one by one, in clusters that are not
+  uint64_t spared = 0;  // one by one, in clusters that show
 };
 
 // Commands for what was visible in the last frame and is in view; fates: EYE_FATE_EARLY where it is drawn. Returns how

@@ -93,7 +93,8 @@ struct FrameInput {
 // How many clusters each test of the culling pass turned away, and what was drawn.
 struct CullCounts {
   uint32_t considered = 0, outside = 0, backFacing = 0, occluded = 0, drawn = 0;
-  uint64_t trianglesDrawn = 0, trianglesOccluded = 0;
+  uint64_t trianglesDrawn = 0;
+  uint64_t trianglesSpared = 0;  // of occluded clusters and, where the CPU culls, those told one by one
 };
 
 struct PassTime {
